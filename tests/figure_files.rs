@@ -52,6 +52,7 @@ fn a_figure_is_drawn_again_from_itself_to_the_same_bytes() {
         "--at nq=20 --layers +candidates",
         "--at nq=20 --part 0.5,0.5,0.4 --size 300x200 --layers +h,+angles,+ellipses,+scale",
         "--plot lengths --ink grey",
+        "--at nq=20 --size 300x200 --line-scale 1.5 --font-size 9",
         "--at nq=20 --plot angles",
         "",
     ] {
@@ -66,6 +67,81 @@ fn a_figure_is_drawn_again_from_itself_to_the_same_bytes() {
         done(&["render", "a.svg", "-q", "--dpi", "72", "-o", "c.svg"], here);
         assert_eq!(done(&["render", "c.svg", "-q", "-o", "d.svg"], here), "");
         assert!(read(here, "c.svg") == read(here, "d.svg"), "{options}");
+    }
+}
+
+/// The values of an attribute that are numbers, of the elements of an SVG with this name.
+fn numbers(svg: &str, element: &str, attribute: &str) -> Vec<f64> {
+    let (begin, name) = (format!("<{element} "), format!(" {attribute}=\""));
+    let elements = svg.split(&begin).skip(1).map(|rest| rest.split_once('>').unwrap().0);
+    let values = elements.filter_map(|text| text.split_once(&name)?.1.split('"').next());
+    values.map(|value| value.parse().unwrap()).collect()
+}
+
+/// The boxes of the plates of labels: their low and high corners.
+fn plates(svg: &str) -> Vec<[f64; 4]> {
+    let rectangles = svg.split("<rect ").skip(1).map(|rest| rest.split_once('>').unwrap().0);
+    let number = |text: &str, name: &str| -> f64 {
+        let text = format!(" {text}");
+        text.split_once(&format!(" {name}=\"")).unwrap().1.split('"').next().unwrap().parse().unwrap()
+    };
+    let plates = rectangles.filter(|text| text.contains("fill-opacity"));
+    plates
+        .map(|text| {
+            let [x, y, w, h] = ["x", "y", "width", "height"].map(|name| number(text, name));
+            [x, y, x + w, y + h]
+        })
+        .collect()
+}
+
+#[test]
+fn lines_and_text_have_the_weights_of_paper_or_of_a_screen() {
+    let folder = tempfile::tempdir().unwrap();
+    let here = folder.path();
+    let drawn = |case: &str, options: &str| {
+        let words: Vec<&str> = options.split_whitespace().collect();
+        done(&[&["render", case, "-q", "-o", "a.svg"][..], &words].concat(), here);
+        String::from_utf8(read(here, "a.svg")).unwrap()
+    };
+    let within = |numbers: &[f64], [least, most]: [f64; 2]| {
+        assert!(numbers.len() > 3 && numbers.iter().all(|n| (least..=most).contains(n)), "{numbers:?}");
+    };
+    // A point is 4/3 pixels; the base is the widest line.
+    for (options, lines, text) in [
+        ("--size 84mm", [0.25, 0.75], [6.0, 7.0]),
+        ("--size 174mm --ink grey", [0.25, 0.75], [6.0, 7.0]),
+        ("--size 700x600", [0.75, 2.25], [9.0, 10.5]),
+        ("--size 700x600 --dpi 72", [1.0, 3.0], [12.0, 14.0]),
+        ("--size 700x600 --dpi 400", [0.25, 0.75], [6.0, 7.0]),
+        ("--size 84mm --line-scale 2 --font-size 9", [0.5, 1.5], [9.0, 10.5]),
+        ("--size 700x600 --line-scale 0.5 --font-size 16", [0.375, 1.125], [12.0, 14.0]),
+    ] {
+        let svg = drawn("figure-14", &format!("--at step=3 --layers=+h,+angles,+scale {options}"));
+        let widths = numbers(&svg, "path", "stroke-width");
+        within(&widths, lines);
+        for bound in lines {
+            assert!(widths.contains(&bound), "{options}: {bound} in {widths:?}");
+        }
+        let sizes = numbers(&svg, "text", "font-size");
+        within(&sizes, text);
+        assert!(sizes.contains(&text[0]) && sizes.contains(&text[1]), "{options}: {sizes:?}");
+        let plates = plates(&svg);
+        for (k, a) in plates.iter().enumerate() {
+            let covers = |b: &[f64; 4]| a[0] < b[2] && b[0] < a[2] && a[1] < b[3] && b[1] < a[3];
+            assert!(!plates[k + 1..].iter().any(covers), "{options}: a plate covers another one");
+        }
+        assert!(plates.len() > 1, "{options}: {} plates", plates.len());
+    }
+    // Only edges so close to each other that they would merge are thinner: on paper at less than 0.4 pt.
+    let crowded = drawn("example1", "--at nq=50 --size 20mm");
+    assert!(numbers(&crowded, "path", "stroke-width").contains(&0.12), "{crowded}");
+    let screen = drawn("example1", "--at nq=50 --size 1600x1600");
+    within(&numbers(&screen, "path", "stroke-width"), [0.75, 2.25]);
+    for (options, size) in [("", 6.0), ("--size 640x480", 9.0), ("--size 640x480 --font-size 20", 15.0)] {
+        for plot in ["lengths", "angles"] {
+            let svg = drawn("example1", &format!("--set {COARSE} --at nq=20 --plot {plot} {options}"));
+            assert_eq!(numbers(&svg, "text", "font-size").into_iter().reduce(f64::min), Some(size), "{options}");
+        }
     }
 }
 
@@ -97,7 +173,7 @@ fn candidates_that_were_refused_are_dotted_with_their_reasons_where_a_side_was_c
         done(&[&asked[..], &["-q", "-o", "a.svg"]].concat(), here);
         String::from_utf8(read(here, "a.svg")).unwrap()
     };
-    const DOTTED: &str = "stroke-dasharray=\"0.6 1.6\"";
+    const DOTTED: &str = "stroke-dasharray=\"0.4 1.2\"";
     let drawn = svg("+candidates", &at, &part);
     assert_eq!(drawn.matches(DOTTED).count(), 1, "one path for all of them");
     let path = drawn.split(DOTTED).nth(1).unwrap().split_once(" d=\"").unwrap().1.split('"').next().unwrap();

@@ -4,7 +4,7 @@ mod options;
 
 pub(super) use options::{FigureOptions, LayerWords, Plot};
 #[cfg(feature = "window")]
-pub(super) use options::{PartWords, Size};
+pub(super) use options::{LINE_SCALES, PartWords, Size, font_size};
 
 use super::convert::describe;
 use super::work::{self, FigureFrame};

@@ -1,18 +1,15 @@
-//! Orthographic pictures of meshes in space, by default slightly from above. Areas (each of one colour) are drawn
-//! unless entirely hidden. Of every line the visible parts are drawn; the hidden parts are left out or drawn more
-//! faintly.
+//! Orthographic pictures of meshes in space, by default slightly from above. Of areas and lines the visible parts are
+//! drawn; hidden parts of lines are left out or drawn more faintly.
+
+mod cover;
 
 use glam::{DVec2, DVec3};
 
+pub use self::cover::{Cover, OnFaces, SeenFace};
 use super::camera::Bearing;
 use super::look::HiddenLines;
-use super::picture::{Line, Picture};
+use super::picture::{Area, Line, Picture, Role};
 use crate::core::soup::MeshFile;
-
-/// The number of parts of a line that are tested for visibility.
-const PARTS: usize = 12;
-/// The test points of an area lie at this share of the way from its corners to its centre.
-const WITHIN: f64 = 0.05;
 
 /// The direction of a view.
 #[derive(Clone, Copy, Debug)]
@@ -40,9 +37,9 @@ impl View {
         DVec2::new(p.dot(self.right), p.dot(self.up))
     }
 
-    /// Its nearness to the viewer.
-    fn depth(&self, p: DVec3) -> f64 {
-        p.dot(self.towards)
+    /// The position of a point in the picture, and its nearness to the viewer.
+    pub fn seen(&self, p: DVec3) -> DVec3 {
+        self.place(p).extend(p.dot(self.towards))
     }
 }
 
@@ -60,63 +57,25 @@ pub fn flattened(mesh: &MeshFile, view: &View) -> MeshFile {
 /// Reverses areas seen from behind, so that all run anticlockwise and overlapping areas of one path do not cancel.
 pub fn turn_over(picture: &mut Picture) {
     for area in &mut picture.areas {
-        let [a, b, c, d] = area.corners;
+        let [a, b, c, d] = [0, 1, 2, 3].map(|k| area.outline[k.min(area.outline.len() - 1)]);
         if (c - a).perp_dot(d - b) < 0.0 {
-            area.corners = if c == d { [a, c, b, b] } else { [a, d, c, b] };
+            area.outline[1..].reverse();
         }
     }
 }
 
-/// The elements of a mesh as triangles in the picture, sorted into the cells of a grid, for visibility tests.
-pub struct Cover {
+/// A mesh in a view.
+pub struct Orthographic {
     view: View,
-    triangles: Vec<[DVec3; 3]>,
-    cells: Vec<Vec<u32>>,
-    low: DVec2,
-    cell: f64,
-    columns: usize,
-    rows: usize,
-    /// Differences in depth below this do not count.
-    thickness: f64,
+    cover: Cover,
 }
 
-impl Cover {
-    /// The elements of a mesh that hide others in a view.
-    pub fn of(mesh: &MeshFile, view: View) -> Cover {
-        let at = |n: u32| {
-            let p = mesh.points[n as usize];
-            view.place(p).extend(view.depth(p))
-        };
-        let halves = mesh.quads.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]);
-        let triangles: Vec<[DVec3; 3]> = mesh.triangles.iter().copied().chain(halves).map(|t| t.map(at)).collect();
-        let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-        for p in triangles.iter().flatten() {
-            (low, high) = (low.min(*p), high.max(*p));
-        }
-        let extent = (high - low).max(DVec3::splat(f64::MIN_POSITIVE));
-        let cell = (extent.x * extent.y / (triangles.len().max(1) as f64)).sqrt().max(1e-3 * extent.max_element());
-        let (columns, rows) = ((extent.x / cell) as usize + 1, (extent.y / cell) as usize + 1);
-        let mut cover = Cover {
-            view,
-            triangles,
-            cells: vec![Vec::new(); columns * rows],
-            low: low.truncate(),
-            cell,
-            columns,
-            rows,
-            thickness: 4e-3 * extent.max_element(),
-        };
-        for (t, corners) in cover.triangles.iter().enumerate() {
-            let least = corners.iter().fold(DVec3::INFINITY, |m, p| m.min(*p));
-            let greatest = corners.iter().fold(DVec3::NEG_INFINITY, |m, p| m.max(*p));
-            let [(c0, r0), (c1, r1)] = [least, greatest].map(|p| cover.cell_of(p.truncate()));
-            for row in r0..=r1 {
-                for column in c0..=c1 {
-                    cover.cells[row * columns + column].push(t as u32);
-                }
-            }
-        }
-        cover
+impl Orthographic {
+    /// The mesh from a side. Its faces are numbered: triangles first, then quadrilaterals.
+    pub fn of(mesh: &MeshFile, view: View) -> Orthographic {
+        let faces = mesh.triangles.iter().map(|t| &t[..]).chain(mesh.quads.iter().map(|q| &q[..]));
+        let cover = Cover::of(faces.map(|nodes| nodes.iter().map(|&n| view.seen(mesh.points[n as usize])).collect()));
+        Orthographic { view, cover }
     }
 
     /// The direction of view.
@@ -124,72 +83,49 @@ impl Cover {
         &self.view
     }
 
-    /// Removes areas that are entirely hidden. The picture must have one area for each triangle, then for each
-    /// quadrilateral.
-    pub fn hide_areas(&self, picture: &mut Picture, mesh: &MeshFile) {
-        let elements = mesh.triangles.iter().map(|t| &t[..]).chain(mesh.quads.iter().map(|q| &q[..]));
-        let mut shows = elements.map(|nodes| {
-            let places = || nodes.iter().map(|&n| mesh.points[n as usize]);
-            let middle = places().sum::<DVec3>() / nodes.len() as f64;
-            // Neighbours may hide a corner itself: test points a little inside.
-            !places().map(|p| p.lerp(middle, WITHIN)).chain([middle]).all(|p| self.hides(p))
-        });
-        picture.areas.retain(|_| shows.next().unwrap_or(true));
+    /// Leaves of each area what is seen of it. The picture must have one area for each face, in their order.
+    pub fn clip_areas(&self, picture: &mut Picture) {
+        let whole = std::mem::take(&mut picture.areas);
+        for (face, area) in whole.into_iter().enumerate() {
+            match self.cover.seen(face) {
+                SeenFace::Whole => picture.areas.push(area),
+                SeenFace::Parts(outlines) => picture
+                    .areas
+                    .extend(outlines.into_iter().map(|outline| Area { role: area.role, outline: outline.into() })),
+            }
+        }
     }
 
     /// Removes the hidden parts of lines, or marks them as hidden. `ends` gives the end points of each line in space.
-    pub fn hide_lines(&self, picture: &mut Picture, ends: &[[DVec3; 2]], hidden: HiddenLines) {
+    pub fn clip_lines(&self, picture: &mut Picture, ends: &[[DVec3; 2]], hidden: HiddenLines) {
         let mut lines = Vec::with_capacity(picture.lines.len());
-        for (line, [a, b]) in picture.lines.iter().zip(ends) {
-            let at = |i: usize| a.lerp(*b, i as f64 / PARTS as f64);
-            let is_hidden: [bool; PARTS] = std::array::from_fn(|i| self.hides(at(i).midpoint(at(i + 1))));
-            let mut from = 0;
-            for same in is_hidden.chunk_by(|a, b| a == b) {
-                let to = from + same.len();
-                if !same[0] || hidden != HiddenLines::Off {
-                    let ends = [from, to].map(|i| self.view.place(at(i)));
-                    lines.push(Line { ends, hidden: same[0], ..line.clone() });
+        for (line, ends) in picture.lines.iter().zip(ends) {
+            let [a, b] = ends.map(|p| self.view.seen(p));
+            let on = if line.role == Role::Refused { OnFaces::Diagonal } else { OnFaces::Along };
+            for (shares, is_hidden) in self.cover.parts([a, b], on) {
+                if !is_hidden || hidden != HiddenLines::Off {
+                    lines.push(Line {
+                        ends: shares.map(|t| a.lerp(b, t).truncate()),
+                        hidden: is_hidden,
+                        ..line.clone()
+                    });
                 }
-                from = to;
             }
         }
         picture.lines = lines;
-    }
-
-    fn cell_of(&self, p: DVec2) -> (usize, usize) {
-        let q = ((p - self.low) / self.cell).floor().max(DVec2::ZERO);
-        ((q.x as usize).min(self.columns - 1), (q.y as usize).min(self.rows - 1))
-    }
-
-    /// Whether an element lies in front of the point.
-    fn hides(&self, p: DVec3) -> bool {
-        let (place, depth) = (self.view.place(p), self.view.depth(p));
-        let (column, row) = self.cell_of(place);
-        self.cells[row * self.columns + column].iter().any(|&t| {
-            let [a, b, c] = self.triangles[t as usize];
-            let area = (b - a).truncate().perp_dot((c - a).truncate());
-            if area == 0.0 {
-                return false;
-            }
-            let share = |p: DVec2, q: DVec2| (q - p).perp_dot(place - p) / area;
-            let (w_c, w_a) = (share(a.truncate(), b.truncate()), share(b.truncate(), c.truncate()));
-            let w_b = 1.0 - w_a - w_c;
-            w_a >= 0.0 && w_b >= 0.0 && w_c >= 0.0 && w_a * a.z + w_b * b.z + w_c * c.z > depth + self.thickness
-        })
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::render::picture::Role;
 
     #[test]
     fn figures_and_the_window_look_from_the_same_sides() {
         for side in [Bearing::Iso, Bearing::X, Bearing::Y, Bearing::Z, Bearing::Angles([-70.0, -20.0, 33.0])] {
             let (view, turn) = (View::from(side), side.turn());
             let p = DVec3::new(0.3, -1.1, 2.0);
-            assert!((turn * p).distance(view.place(p).extend(view.depth(p))) < 1e-12, "{side}");
+            assert!((turn * p).distance(view.seen(p)) < 1e-12, "{side}");
         }
     }
 
@@ -207,7 +143,7 @@ mod tests {
             let ends = line(z);
             let one = Line { role: Role::DeadEdge, ends: ends.map(|p| view.place(p)), room: 1.0, hidden: false };
             let mut picture = Picture { lines: vec![one], ..Picture::default() };
-            Cover::of(&mesh, view).hide_lines(&mut picture, &[ends], hidden);
+            Orthographic::of(&mesh, view).clip_lines(&mut picture, &[ends], hidden);
             picture.lines
         };
         for hidden in HiddenLines::ALL {
@@ -215,7 +151,7 @@ mod tests {
         }
         let behind = drawn(-1.0, HiddenLines::Off);
         assert_eq!(behind.len(), 1);
-        assert!((behind[0].ends[1].x).abs() < 0.2, "{behind:?}");
+        assert!(behind[0].ends[1].x.abs() < 1e-12, "it ends where the element begins: {behind:?}");
         let faint = drawn(-1.0, HiddenLines::Faint);
         assert_eq!(faint.iter().map(|line| line.hidden).collect::<Vec<_>>(), [false, true]);
         assert_eq!((&faint[0], faint[1].ends[0]), (&behind[0], behind[0].ends[1]));

@@ -236,7 +236,8 @@ pub fn bars(ink: Ink) -> [[&'static str; 2]; 2] {
     }
 }
 
-/// The `figure` palette. The widths are for paper: in a column of 84 mm lines neither merge nor fade.
+/// The `figure` palette. The widths are for paper, a quarter to three quarters of a point: in a column of 84 mm lines
+/// neither merge nor fade. `Weights` has the factor for other media.
 pub fn figure(role: Role, ink: Ink) -> Style {
     let of_ink = |grey, colour| Some(if ink == Ink::Grey { grey } else { colour });
     let area = |grey, colour| Style { fill: of_ink(grey, colour), stroke: None, width: 0.0, dash: None };
@@ -245,18 +246,18 @@ pub fn figure(role: Role, ink: Ink) -> Style {
         Role::LiveTriangle => area("#FFFFFF", "#FFFFFF"),
         Role::DeadQuad => area("#E4E4E4", "#DBE4EC"),
         Role::Changed => area(HATCH, "#A6DCCB"),
-        Role::LiveEdge => line("#9A9A9A", "#9A9A9A", 0.2),
-        Role::DeadEdge => line("#6B6B6B", "#6F8496", 0.28),
-        Role::ChangedEdge => line("#404040", "#00806A", 0.5),
-        Role::Boundary => line("#000000", "#20262C", 0.6),
-        Role::Front(4) => line("#808080", "#6E7A87", 0.6),
-        Role::Front(3) => line("#404040", "#7C70DA", 0.75),
-        Role::Front(2) => line("#404040", "#00659C", 0.75),
-        Role::Front(_) => line("#000000", "#002B45", 0.85),
-        Role::Refused => Style { dash: Some([0.6, 1.6]), ..line("#404040", "#616A74", 0.6) },
-        Role::Side => line("#000000", "#C77812", 0.85),
-        Role::Top => Style { dash: Some([2.4, 1.6]), ..line("#000000", "#C77812", 0.7) },
-        Role::Base => line("#000000", "#AD4E00", 1.25),
+        Role::LiveEdge => line("#9A9A9A", "#9A9A9A", 0.25),
+        Role::DeadEdge => line("#6B6B6B", "#6F8496", 0.25),
+        Role::ChangedEdge => line("#404040", "#00806A", 0.4),
+        Role::Boundary => line("#000000", "#20262C", 0.45),
+        Role::Front(4) => line("#808080", "#6E7A87", 0.4),
+        Role::Front(3) => line("#404040", "#7C70DA", 0.5),
+        Role::Front(2) => line("#404040", "#00659C", 0.5),
+        Role::Front(_) => line("#000000", "#002B45", 0.55),
+        Role::Refused => Style { dash: Some([0.4, 1.2]), ..line("#404040", "#616A74", 0.4) },
+        Role::Side => line("#000000", "#C77812", 0.55),
+        Role::Top => Style { dash: Some([2.0, 1.3]), ..line("#000000", "#C77812", 0.5) },
+        Role::Base => line("#000000", "#AD4E00", 0.75),
     }
 }
 

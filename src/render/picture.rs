@@ -3,7 +3,9 @@
 
 use glam::{DVec2, DVec3};
 
-use super::orthographic::{self, Cover, View};
+use smallvec::SmallVec;
+
+use super::orthographic::{self, Orthographic, View};
 
 use super::look::{Layer, Layers, Look};
 use super::refused::{Refused, refused};
@@ -69,13 +71,14 @@ impl Role {
     ];
 }
 
-/// An area: three or four corners, anticlockwise.
+/// An area: an element, or what is seen of one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Area {
     /// Its role.
     pub role: Role,
-    /// Corners; a triangle repeats its last one.
-    pub corners: [DVec2; 4],
+    /// Its corners, anticlockwise. The outline of a hole is an area too, with its corners clockwise: what areas of one
+    /// role go around in all is filled where they go around it other than zero times.
+    pub outline: SmallVec<[DVec2; 4]>,
 }
 
 /// A straight line.
@@ -194,21 +197,21 @@ impl Picture {
 
     /// The same with a look, for meshes in space.
     pub fn of_mesh_by(mesh: &MeshFile, look: &Look) -> Picture {
-        Picture::with_cover(mesh, look).0
+        Picture::in_view(mesh, look).0
     }
 
-    /// The same, with what hides lines of a mesh in space.
-    fn with_cover(mesh: &MeshFile, look: &Look) -> (Picture, Option<Cover>) {
+    /// The same, with the view on a mesh in space.
+    fn in_view(mesh: &MeshFile, look: &Look) -> (Picture, Option<Orthographic>) {
         if orthographic::is_flat(mesh) {
             return (Picture::as_it_lies(mesh).0, None);
         }
-        let cover = Cover::of(mesh, View::from(look.from));
-        let (mut picture, edges) = Picture::as_it_lies(&orthographic::flattened(mesh, cover.view()));
+        let seen = Orthographic::of(mesh, View::from(look.from));
+        let (mut picture, edges) = Picture::as_it_lies(&orthographic::flattened(mesh, seen.view()));
         let ends: Vec<[DVec3; 2]> = edges.iter().map(|e| e.map(|n| mesh.points[n as usize])).collect();
         orthographic::turn_over(&mut picture);
-        cover.hide_areas(&mut picture, mesh);
-        cover.hide_lines(&mut picture, &ends, look.hidden);
-        (picture, Some(cover))
+        seen.clip_areas(&mut picture);
+        seen.clip_lines(&mut picture, &ends, look.hidden);
+        (picture, Some(seen))
     }
 
     /// The picture of a mesh in the plane, with the nodes of each line.
@@ -217,8 +220,7 @@ impl Picture {
         let mut picture = Picture::default();
         let mut sides = Vec::with_capacity(mesh.triangles.len() * 3 + mesh.quads.len() * 4 + mesh.lines.len());
         let mut element = |nodes: &[u32], area_role, edge_role| {
-            let corner = |k: usize| at(nodes[k.min(nodes.len() - 1)]);
-            picture.areas.push(Area { role: area_role, corners: [corner(0), corner(1), corner(2), corner(3)] });
+            picture.areas.push(Area { role: area_role, outline: nodes.iter().map(|n| at(*n)).collect() });
             for (k, &a) in nodes.iter().enumerate() {
                 let b = nodes[(k + 1) % nodes.len()];
                 let along = at(b) - at(a);
@@ -255,12 +257,12 @@ impl Picture {
     fn of_state_in_space(seen: &Seen<'_>, look: &Look) -> Picture {
         let Seen { mesh, parameters, phase, candidates, .. } = *seen;
         let file = Export::of(mesh, &Names::default()).file;
-        let (mut picture, cover) = Picture::with_cover(&file, look);
+        let (mut picture, view) = Picture::in_view(&file, look);
         let base = Decision::of(phase).base.and_then(|[a, b]| mesh.front_between(a, b));
         let (mut front, mut space) = (Picture::default(), Vec::new());
         let mut add = |role: Role, ends: [NodeId; 2]| {
             let in_space = ends.map(|n| mesh.xyz(n));
-            let ends = in_space.map(|p| cover.as_ref().map_or(p.truncate(), |cover| cover.view().place(p)));
+            let ends = in_space.map(|p| view.as_ref().map_or(p.truncate(), |seen| seen.view().place(p)));
             front.lines.push(Line { role, ends, room: f64::INFINITY, hidden: false });
             space.push(in_space);
         };
@@ -273,8 +275,8 @@ impl Picture {
             let there = refused(mesh, phase, candidates).into_iter().map(|candidate| candidate.ends);
             there.filter(|ends| ends.iter().all(|n| mesh.has_node(*n))).for_each(|ends| add(Role::Refused, ends));
         }
-        if let Some(cover) = &cover {
-            cover.hide_lines(&mut front, &space, look.hidden);
+        if let Some(view) = &view {
+            view.clip_lines(&mut front, &space, look.hidden);
         }
         picture.lines.append(&mut front.lines);
         picture
@@ -327,8 +329,7 @@ impl Picture {
 
     fn add_changed(&mut self, mesh: &Mesh, e: ElementId) {
         let nodes: Vec<NodeId> = mesh.half_edges(e).map(|h| mesh.origin(h)).collect();
-        let corner = |k: usize| mesh.uv(nodes[k.min(nodes.len() - 1)]);
-        self.areas.push(Area { role: Role::Changed, corners: [corner(0), corner(1), corner(2), corner(3)] });
+        self.areas.push(Area { role: Role::Changed, outline: nodes.iter().map(|n| mesh.uv(*n)).collect() });
         for (k, &a) in nodes.iter().enumerate() {
             self.add_line(mesh, Role::ChangedEdge, [a, nodes[(k + 1) % nodes.len()]]);
         }
@@ -384,7 +385,8 @@ impl Picture {
 
     /// The bounding box of the picture; `None` where it is empty.
     pub fn bounds(&self) -> Option<[DVec2; 2]> {
-        let points = self.areas.iter().flat_map(|a| a.corners).chain(self.lines.iter().flat_map(|l| l.ends));
+        let corners = self.areas.iter().flat_map(|area| area.outline.iter().copied());
+        let points = corners.chain(self.lines.iter().flat_map(|line| line.ends));
         let points = points.filter(|p| p.is_finite());
         points.map(|p| [p, p]).reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])])
     }

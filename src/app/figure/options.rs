@@ -10,10 +10,14 @@ use crate::core::run::Shown;
 use crate::render::camera::Bearing;
 use crate::render::look::{FigurePart, HiddenLines, Ink, Layer, Layers, Look};
 use crate::render::vector::svg::{COLUMN, MILLIMETRE, PAGE, Sheet};
+use crate::render::vector::weights::{NOTE, Weights};
 
 /// Dots per inch of line art in print, and of screens.
 const PRINT: f64 = 300.0;
 const SCREEN: f64 = 96.0;
+
+/// Possible factors on the widths of lines.
+pub(in crate::app) const LINE_SCALES: [f64; 2] = [0.1, 20.0];
 
 /// The size of a figure; the height is optional and follows from the content.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -159,9 +163,23 @@ fn bearing(text: &str) -> Result<Bearing, String> {
     Bearing::parse(text).ok_or_else(|| "write iso, x, y, z, or degrees AZ,EL such as 33,27".to_owned())
 }
 
+fn number(text: &str, range: [f64; 2]) -> Result<f64, String> {
+    let [least, most] = range;
+    let number = text.parse().ok().filter(|x| (least..=most).contains(x));
+    number.ok_or_else(|| format!("write a number from {least} to {most}"))
+}
+
 fn dpi(text: &str) -> Result<f64, String> {
-    let number = text.parse().ok().filter(|x| (10.0..=2400.0).contains(x));
-    number.ok_or_else(|| "write a number from 10 to 2400".to_owned())
+    number(text, [10.0, 2400.0])
+}
+
+fn line_scale(text: &str) -> Result<f64, String> {
+    number(text, LINE_SCALES)
+}
+
+/// Parses a size of text.
+pub(in crate::app) fn font_size(text: &str) -> Result<f64, String> {
+    number(text, [1.0, 200.0])
 }
 
 /// Options of a figure.
@@ -174,6 +192,13 @@ pub(in crate::app) struct FigureOptions {
     /// Dots per inch of a PNG, and of a size in pixels [default: 300, with a size in pixels 96]
     #[arg(long, value_name = "NUMBER", value_parser = dpi)]
     pub dpi: Option<f64>,
+    /// Factor on the widths of all lines, which are 0.25 to 0.75 pt, and with a size in pixels 1 to 3 pixels
+    #[arg(long, value_name = "FACTOR", value_parser = line_scale)]
+    pub line_scale: Option<f64>,
+    /// Size of notes and numbers in points, with a size in pixels in pixels; captions and letters are a sixth larger
+    /// [default: 6 pt, with a size in pixels 12]
+    #[arg(long, value_name = "NUMBER", value_parser = font_size)]
+    pub font_size: Option<f64>,
     /// Ink: grey or colour
     #[arg(long, value_name = "INK", value_parser = ink)]
     pub ink: Option<Ink>,
@@ -219,6 +244,8 @@ impl FigureOptions {
         let words = [
             self.size.map(|size| format!("--size={size}")),
             self.dpi.map(|dpi| format!("--dpi={dpi}")),
+            self.line_scale.map(|factor| format!("--line-scale={factor}")),
+            self.font_size.map(|size| format!("--font-size={size}")),
             self.ink.map(|ink| format!("--ink={}", inks(ink))),
             self.transparent.map(|yes| format!("--transparent={yes}")),
             self.layers.as_ref().map(|layers| format!("--layers={}", layers.0)),
@@ -249,7 +276,7 @@ impl FigureOptions {
         macro_rules! completed {
             ($($option:ident),*) => { FigureOptions { $($option: self.$option.clone().or(theirs.$option),)* } };
         }
-        Ok(completed!(size, dpi, ink, transparent, layers, plot, part, view, hidden, columns))
+        Ok(completed!(size, dpi, line_scale, font_size, ink, transparent, layers, plot, part, view, hidden, columns))
     }
 
     /// The look of the figure.
@@ -280,7 +307,15 @@ impl FigureOptions {
             Some(Size::Pixels(width, height)) => (f64::from(width) * point, height.map(|h| f64::from(h) * point)),
         };
         let columns = self.columns.map(|columns| columns as usize);
-        Sheet { title, description, run, width, height, look: self.look(strip), columns }
+        Sheet { title, description, run, width, height, look: self.look(strip), columns, weights: self.weights() }
+    }
+
+    /// The weights of lines and text.
+    fn weights(&self) -> Weights {
+        let pixel = matches!(self.size, Some(Size::Pixels(..))).then(|| 72.0 / self.dots());
+        let usual = pixel.map_or(Weights::PAPER, Weights::of_pixels);
+        let size = self.font_size.map(|size| size * pixel.unwrap_or(1.0));
+        Weights { line: usual.line * self.line_scale.unwrap_or(1.0), text: size.map_or(usual.text, |size| size / NOTE) }
     }
 }
 
@@ -297,6 +332,7 @@ mod tests {
             "--size=84.5mm --layers=live,front",
             "--view=-30,27.5,4 --part=0,0,3",
             "--view=x --hidden=faint",
+            "--size=640x480 --line-scale=1.5 --font-size=14",
         ] {
             let words: Vec<String> = line.split_whitespace().map(str::to_owned).collect();
             let options = FigureOptions::from_words(&words).unwrap();
@@ -312,6 +348,8 @@ mod tests {
             "--view=w",
             "--view=0,91",
             "--hidden=no",
+            "--line-scale=0",
+            "--font-size=nan",
             "a",
             "--out=b",
         ] {

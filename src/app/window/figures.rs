@@ -81,6 +81,10 @@ pub struct FigureForm {
     /// As `--size` takes it; empty: as wide as a column, or a page for a strip.
     pub size: String,
     pub dpi: f64,
+    /// The factor on the widths of lines.
+    pub line_scale: f64,
+    /// As `--font-size` takes it; empty: as usual on paper or on a screen.
+    pub font_size: String,
     pub ink: Ink,
     /// Whether the ground is transparent, not white.
     pub transparent: bool,
@@ -101,6 +105,8 @@ impl Default for FigureForm {
             stops: "50,100,150".to_owned(),
             size: String::new(),
             dpi: 300.0,
+            line_scale: 1.0,
+            font_size: String::new(),
             ink: Ink::Colour,
             transparent: false,
             changed: Vec::new(),
@@ -152,6 +158,10 @@ impl FigureForm {
                 whole => whole,
             });
         }
+        let font_size = match self.font_size.trim() {
+            "" => None,
+            text => Some(figure::font_size(text).map_err(|what| Fault::new(format!("The size of the text: {what}")))?),
+        };
         let mut layers = self.usual();
         self.changed.iter().for_each(|(layer, on)| layers.set(*layer, *on));
         let plot = match self.content {
@@ -162,6 +172,8 @@ impl FigureForm {
         Ok(FigureOptions {
             size,
             dpi: (self.dpi != 300.0).then_some(self.dpi),
+            line_scale: (self.line_scale != 1.0).then_some(self.line_scale),
+            font_size,
             ink: (self.ink == Ink::Grey).then_some(Ink::Grey),
             transparent: self.transparent.then_some(true),
             layers: (!self.changed.is_empty()).then(|| LayerWords::exactly(layers)),

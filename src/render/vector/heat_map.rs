@@ -5,7 +5,8 @@ use std::fmt::Write;
 use glam::DVec2;
 
 use super::svg::page::{Page, Path, Short, width};
-use super::svg::{COLUMN, LABEL, NOTE, PAGE, Sheet};
+use super::svg::{COLUMN, PAGE, Sheet};
+use super::weights::{LABEL, NOTE};
 use crate::core::kernel::number::{counted, fixed, grouped};
 use crate::core::record::report::figures::{Better, Figure};
 use crate::core::record::sweep::{Axis, Cell, Sweep};

@@ -2,14 +2,15 @@
 
 use glam::DVec2;
 
-use super::svg::page::{Page, Path, width};
-use super::svg::{LABEL, NOTE, Sheet};
+use super::svg::Sheet;
+use super::svg::page::{Page, Path, Short, width};
+use super::weights::Weights;
 use crate::core::kernel::number::{fixed, grouped};
 use crate::core::record::Statistics;
 use crate::core::record::statistics::{ANGLE_CLASSES, LENGTH_CLASSES};
 use crate::render::palette::{LETTER, bars};
 
-/// Margins around the axes in points, for the numbers of the vertical and of the horizontal axis.
+/// Margins around the axes on paper in points, for the numbers of the vertical and of the horizontal axis.
 const LEFT: f64 = 27.0;
 const BELOW: f64 = 22.0;
 const ABOVE: f64 = 12.0;
@@ -80,18 +81,19 @@ impl Histogram {
     /// The histogram as an SVG file.
     pub fn write(&self, sheet: &Sheet<'_>) -> String {
         let height = sheet.height.unwrap_or(SHAPE * sheet.width);
+        let (note, text) = (sheet.weights.note(), sheet.weights.text);
         let mut page = Page::new(sheet, height, true);
         let most = self.series.iter().flat_map(|s| &s.1).copied().max().unwrap_or(0).max(1);
         let most = (self.height(most).ceil() as u64).max(1);
         let step = step(most);
         let top = most.div_ceil(step) * step;
         let plot = Plot {
-            low: DVec2::new(LEFT, height - BELOW),
-            high: DVec2::new(sheet.width - RIGHT, ABOVE),
+            low: DVec2::new(LEFT * text, height - BELOW * text),
+            high: DVec2::new(sheet.width - RIGHT * text, ABOVE * text),
             range: self.range,
             top: top as f64,
         };
-        page.text(DVec2::new(plot.high.x, NOTE), NOTE, "end", &self.note);
+        page.text(DVec2::new(plot.high.x, note), note, "end", self.note_within(plot.high.x, note));
         self.bars(&mut page, &plot, sheet);
         self.axes(&mut page, &plot, step, top);
         page.finish()
@@ -108,8 +110,21 @@ impl Histogram {
         if self.all.is_some() { fixed(height as f64 / PARTS, decimals) } else { grouped(height) }
     }
 
+    /// As many clauses of the note as have room.
+    fn note_within(&self, room: f64, size: f64) -> &str {
+        let mut text = &self.note[..];
+        while width(text, size) > room
+            && let Some(end) = text.rfind([',', ':', ';'])
+        {
+            text = &text[..end];
+        }
+        text
+    }
+
     fn bars(&self, page: &mut Page, plot: &Plot, sheet: &Sheet<'_>) {
         let styles = bars(sheet.look.ink);
+        let (note, Weights { line, text }) = (sheet.weights.note(), sheet.weights);
+        let outline = Short(0.4 * line);
         let count = self.series.len() as f64;
         let mut taken = f64::NEG_INFINITY;
         let classes = self.series.first().map_or(0, |s| s.1.len());
@@ -121,59 +136,67 @@ impl Histogram {
                 let (low, high) = (plot.at(share(0.0), 0.0), plot.at(share(1.0), self.height(counts[k])));
                 let [fill, stroke] = styles[i.min(1)];
                 // The outline lies inside the bar.
-                let inset = DVec2::new(0.2, 0.0);
+                let inset = DVec2::new(0.2 * line, 0.0);
                 let area = [DVec2::new(low.x, high.y) + inset, DVec2::new(high.x, low.y) - inset];
-                page.bar(area, &format!("fill=\"{fill}\" stroke=\"{stroke}\" stroke-width=\"0.4\""));
+                page.bar(area, &format!("fill=\"{fill}\" stroke=\"{stroke}\" stroke-width=\"{outline}\""));
                 if counts[k] < FEW {
-                    numbers.push((DVec2::new(0.5 * (low.x + high.x), high.y - 1.5), counts[k].to_string()));
+                    numbers.push((DVec2::new(0.5 * (low.x + high.x), high.y - 1.5 * text), counts[k].to_string()));
                 }
             }
         }
-        for (at, text) in numbers {
-            let half = 0.5 * width(&text, NOTE);
+        for (at, number) in numbers {
+            let half = 0.5 * width(&number, note);
             if at.x - half > taken {
-                page.text(at, NOTE, "middle", &text);
-                taken = at.x + half + 0.3;
+                page.text(at, note, "middle", &number);
+                taken = at.x + half + 0.3 * text;
             }
         }
         if self.series.len() > 1 {
-            let mut x = plot.low.x + 6.0;
+            let mut x = plot.low.x + 6.0 * text;
             for (i, (name, _)) in self.series.iter().enumerate() {
                 let [fill, stroke] = styles[i.min(1)];
-                let box_at = DVec2::new(x, plot.high.y + 2.0);
-                let style = format!("fill=\"{fill}\" stroke=\"{stroke}\" stroke-width=\"0.4\"");
-                page.bar([box_at, box_at + DVec2::new(5.0, 4.0)], &style);
-                page.text(box_at + DVec2::new(7.0, 4.2), NOTE, "start", name);
-                x += 7.0 + width(name, NOTE) + 8.0;
+                let box_at = DVec2::new(x, plot.high.y + 2.0 * text);
+                let style = format!("fill=\"{fill}\" stroke=\"{stroke}\" stroke-width=\"{outline}\"");
+                page.bar([box_at, box_at + DVec2::new(5.0, 4.0) * text], &style);
+                page.text(box_at + DVec2::new(7.0, 4.2) * text, note, "start", name);
+                x += 15.0 * text + width(name, note);
             }
         }
     }
 
     fn axes(&self, page: &mut Page, plot: &Plot, step: u64, top: u64) {
+        let (note, label, Weights { line, text }) = (page.weights().note(), page.weights().label(), page.weights());
         let mut path = Path::default();
         let (corner, end) = (plot.low, DVec2::new(plot.high.x, plot.low.y));
         path.walk([DVec2::new(corner.x, plot.high.y), corner, end].into_iter(), false);
         let mut numbers = Vec::new();
         for k in 0..=(top / step) {
             let at = plot.at(self.range[0], (k * step) as f64);
-            path.walk([at, at - DVec2::new(2.0, 0.0)].into_iter(), false);
-            numbers.push((at + DVec2::new(-3.5, 0.35 * NOTE), "end", self.number(k * step, step)));
+            path.walk([at, at - DVec2::new(2.0 * text, 0.0)].into_iter(), false);
+            numbers.push((at + DVec2::new(-3.5 * text, 0.35 * note), "end", self.number(k * step, step)));
         }
         let (tick, decimals) = self.tick;
+        let mut taken = f64::NEG_INFINITY;
         let ticks = ((self.range[1] - self.range[0]) / tick + 1e-6) as u32;
         for k in 0..=ticks {
             let x = self.range[0] + tick * f64::from(k);
             let at = plot.at(x, 0.0);
-            path.walk([at, at + DVec2::new(0.0, 2.0)].into_iter(), false);
-            numbers.push((at + DVec2::new(0.0, 3.0 + 0.8 * NOTE), "middle", fixed(x, decimals)));
+            path.walk([at, at + DVec2::new(0.0, 2.0 * text)].into_iter(), false);
+            let number = fixed(x, decimals);
+            let half = 0.5 * width(&number, note);
+            // Where the text is large, every other number has no room, or more of them.
+            if at.x - half > taken {
+                taken = at.x + half + 1.0 * text;
+                numbers.push((at + DVec2::new(0.0, 3.0 * text + 0.8 * note), "middle", number));
+            }
         }
-        page.path(&path, &format!("fill=\"none\" stroke=\"{LETTER}\" stroke-width=\"0.5\""));
-        for (at, anchor, text) in numbers {
-            page.text(at, NOTE, anchor, &text);
+        page.path(&path, &format!("fill=\"none\" stroke=\"{LETTER}\" stroke-width=\"{}\"", Short(0.5 * line)));
+        for (at, anchor, number) in numbers {
+            page.text(at, note, anchor, &number);
         }
-        let below = DVec2::new(0.5 * (plot.low.x + plot.high.x), plot.low.y + BELOW - 0.35 * LABEL);
-        page.text(below, LABEL, "middle", &self.axes[0]);
-        page.upright_text(DVec2::new(LABEL, 0.5 * (plot.low.y + plot.high.y)), LABEL, &self.axes[1]);
+        let below = DVec2::new(0.5 * (plot.low.x + plot.high.x), plot.low.y + BELOW * text - 0.35 * label);
+        page.text(below, label, "middle", &self.axes[0]);
+        page.upright_text(DVec2::new(label, 0.5 * (plot.low.y + plot.high.y)), label, &self.axes[1]);
     }
 }
 

@@ -8,7 +8,8 @@ use glam::DVec2;
 
 use self::frame::SvgFrame;
 use self::marks::Marks;
-use self::page::{Page, Path};
+use self::page::{Page, Path, Short};
+use super::weights::Weights;
 use crate::render::look::{FigurePart, Layer, Look};
 use crate::render::palette::{CROWDED, HATCH, THIN, figure};
 use crate::render::picture::{Line, Picture, Role};
@@ -25,14 +26,9 @@ pub const PAGE: f64 = 174.0 * MILLIMETRE;
 /// The gap between the frames of a strip, in points.
 const GAP: f64 = 3.0 * MILLIMETRE;
 
-/// Size of captions and letters in points.
-pub(super) const LABEL: f64 = 7.0;
-/// Size of notes in points: the smallest that is legible in print.
-pub(super) const NOTE: f64 = 6.0;
-
 /// Default number of frames side by side.
 const COLUMNS: usize = 4;
-/// A narrower frame has no room for caption and scale bar in one row.
+/// A frame narrower than this on paper has no room for caption and scale bar in one row.
 const NARROW: f64 = 95.0;
 
 /// The page of a picture.
@@ -52,26 +48,29 @@ pub struct Sheet<'a> {
     pub look: Look,
     /// Number of frames of a strip side by side.
     pub columns: Option<usize>,
+    /// The weights of its medium.
+    pub weights: Weights,
 }
 
 impl<'a> Sheet<'a> {
     /// A sheet as wide as a column.
     pub fn column(title: &'a str, description: &'a str, look: Look) -> Sheet<'a> {
-        Sheet { title, description, run: None, width: COLUMN, height: None, look, columns: None }
+        let weights = Weights::PAPER;
+        Sheet { title, description, run: None, width: COLUMN, height: None, look, columns: None, weights }
     }
 }
 
 /// Writes one picture as an SVG file.
 pub fn write(picture: &Picture, sheet: &Sheet<'_>) -> String {
-    let look = &sheet.look;
+    let (look, weights) = (&sheet.look, &sheet.weights);
     // The scale bar has its own row below the picture.
-    let below = if look.layers.has(Layer::Scale) { 1.7 * LABEL } else { 0.0 };
+    let below = if look.layers.has(Layer::Scale) { 1.7 * weights.label() } else { 0.0 };
     let part = look.part.map(|part| part_bounds(part, sheet.width, sheet.height));
-    let frame = SvgFrame::fit(part.or_else(|| picture.bounds()), sheet.width, sheet.height.map(|h| h - below), look);
+    let frame = SvgFrame::fit(part.or_else(|| picture.bounds()), sheet.width, sheet.height.map(|h| h - below), sheet);
     let mut page = Page::new(sheet, frame.size.y + below, uses_text(std::slice::from_ref(picture), look, false));
     draw(&mut page, picture, &frame, look, 0);
     if below > 0.0 {
-        scale_bar(&mut page, &frame, DVec2::new(frame.size.x - 1.0, frame.size.y + 1.0 * LABEL), look);
+        scale_bar(&mut page, &frame, DVec2::new(frame.size.x - 1.0, frame.size.y + weights.label()), look);
     }
     page.finish()
 }
@@ -79,19 +78,20 @@ pub fn write(picture: &Picture, sheet: &Sheet<'_>) -> String {
 /// Writes pictures side by side in equal frames of the same scale, each with a letter and its title below, and one
 /// scale bar for all.
 pub fn strip(pictures: &[Picture], sheet: &Sheet<'_>) -> String {
-    let look = &sheet.look;
+    let (look, label) = (&sheet.look, sheet.weights.label());
     let count = pictures.len().max(1);
     let rows = count.div_ceil(sheet.columns.unwrap_or(COLUMNS).clamp(1, count));
     let columns = count.div_ceil(rows);
     let each = (sheet.width - GAP * (columns - 1) as f64) / columns as f64;
-    let caption = 1.9 * LABEL;
+    let caption = 1.9 * label;
     let has_bar = look.layers.has(Layer::Scale);
-    let own_row = if has_bar && each < NARROW && count == rows * columns { 1.5 * LABEL } else { 0.0 };
+    let is_narrow = each < NARROW * sheet.weights.text;
+    let own_row = if has_bar && is_narrow && count == rows * columns { 1.5 * label } else { 0.0 };
     let inner = sheet.height.map(|h| (h - own_row - GAP * (rows - 1) as f64) / rows as f64 - caption);
     let union = |a: [DVec2; 2], b: [DVec2; 2]| [a[0].min(b[0]), a[1].max(b[1])];
     let part = look.part.map(|part| part_bounds(part, each, inner));
     let all = part.or_else(|| pictures.iter().filter_map(Picture::bounds).reduce(union));
-    let first = SvgFrame::fit(all, each, inner, look);
+    let first = SvgFrame::fit(all, each, inner, sheet);
     let row = first.size.y + caption;
     let height = row * rows as f64 + GAP * (rows - 1) as f64 + own_row;
     let mut page = Page::new(sheet, height, uses_text(pictures, look, true));
@@ -99,11 +99,11 @@ pub fn strip(pictures: &[Picture], sheet: &Sheet<'_>) -> String {
         let left_top = DVec2::new((k % columns) as f64 * (each + GAP), (k / columns) as f64 * (row + GAP));
         let frame = first.moved(left_top);
         draw(&mut page, picture, &frame, look, k);
-        let at = left_top + DVec2::new(1.0, first.size.y + 1.25 * LABEL);
-        page.text(at, LABEL, "start", &format!("({}) {}", letter(k), picture.title));
+        let at = left_top + DVec2::new(1.0, first.size.y + 1.25 * label);
+        page.text(at, label, "start", &format!("({}) {}", letter(k), picture.title));
     }
     if has_bar {
-        let y = height - caption + 1.25 * LABEL - if own_row > 0.0 { 0.4 * LABEL } else { 0.0 };
+        let y = height - caption + 1.25 * label - if own_row > 0.0 { 0.4 * label } else { 0.0 };
         scale_bar(&mut page, &first, DVec2::new(sheet.width - 1.0, y), look);
     }
     page.finish()
@@ -148,9 +148,8 @@ fn draw(page: &mut Page, picture: &Picture, frame: &SvgFrame, look: &Look, numbe
 fn areas(page: &mut Page, picture: &Picture, frame: &SvgFrame, look: &Look, role: Role) {
     let Some(fill) = figure(role, look.ink).fill else { return };
     let mut path = Path::default();
-    for area in picture.areas.iter().filter(|a| a.role == role && frame.sees(&a.corners)) {
-        let corners = if area.corners[2] == area.corners[3] { &area.corners[..3] } else { &area.corners[..] };
-        path.walk(corners.iter().map(|p| frame.place(*p)), true);
+    for area in picture.areas.iter().filter(|a| a.role == role && frame.sees(&a.outline)) {
+        path.walk(area.outline.iter().map(|p| frame.place(*p)), true);
     }
     if fill == HATCH && !path.is_empty() {
         page.define_hatch();
@@ -162,19 +161,24 @@ fn areas(page: &mut Page, picture: &Picture, frame: &SvgFrame, look: &Look, role
 fn lines(page: &mut Page, picture: &Picture, frame: &SvgFrame, look: &Look, role: Role, hidden: bool) {
     let style = figure(role, look.ink);
     let Some(stroke) = style.stroke else { return };
+    let weight = page.weights().line;
     let (cap, dash) = match style.dash {
-        Some([on, off]) => ("butt", format!(" stroke-dasharray=\"{on} {off}\"")),
+        Some(dash) => {
+            let [on, off] = dash.map(|length| Short(length * weight));
+            ("butt", format!(" stroke-dasharray=\"{on} {off}\""))
+        }
         None => ("round", String::new()),
     };
     let opacity = if hidden { format!(" stroke-opacity=\"{}\"", look.hidden.share()) } else { String::new() };
     for (crowded, width) in [(true, THIN.min(style.width)), (false, style.width)] {
         let mut path = Path::default();
         // The boundary keeps its width, for orientation.
-        let thin = |room: f64| role != Role::Boundary && room * frame.scale < CROWDED;
+        let thin = |room: f64| role != Role::Boundary && room * frame.scale < CROWDED * weight;
         let here = |l: &&Line| l.role == role && l.hidden == hidden && thin(l.room) == crowded;
         for line in picture.lines.iter().filter(here).filter(|l| frame.sees(&l.ends)) {
             path.walk(line.ends.iter().map(|p| frame.place(*p)), false);
         }
+        let width = Short(width * weight);
         let stroke = format!("stroke=\"{stroke}\" stroke-width=\"{width}\" stroke-linecap=\"{cap}\"{dash}{opacity}");
         page.path(&path, &format!("fill=\"none\" {stroke}"));
     }
@@ -189,15 +193,17 @@ fn scale_bar(page: &mut Page, frame: &SvgFrame, right: DVec2, look: &Look) {
     let power = libm::pow(10.0, libm::floor(libm::log10(wanted)));
     let length = [5.0, 2.0, 1.0].into_iter().map(|k| k * power).find(|l| *l <= wanted).unwrap_or(power);
     let left = right - DVec2::new(length * frame.scale, 0.0);
-    let middle = DVec2::new(0.0, 0.3 * NOTE);
+    let Weights { line, text } = page.weights();
+    let note = page.weights().note();
+    let middle = DVec2::new(0.0, 0.3 * note);
     let mut path = Path::default();
     path.walk([left - middle, right - middle].into_iter(), false);
     for end in [left, right] {
-        path.walk([-1.5, 1.5].into_iter().map(|y| end - middle + DVec2::new(0.0, y)), false);
+        path.walk([-1.5, 1.5].into_iter().map(|y| end - middle + DVec2::new(0.0, y * text)), false);
     }
     let stroke = figure(Role::Boundary, look.ink).stroke.unwrap_or_default();
-    page.path(&path, &format!("fill=\"none\" stroke=\"{stroke}\" stroke-width=\"0.5\""));
-    page.text(left - DVec2::new(2.5, 0.0), NOTE, "end", &length_in_words(length));
+    page.path(&path, &format!("fill=\"none\" stroke=\"{stroke}\" stroke-width=\"{}\"", Short(0.5 * line)));
+    page.text(left - DVec2::new(2.5 * text, 0.0), note, "end", &length_in_words(length));
 }
 
 /// A round length as text: 0.2, 50, 2e-7.

@@ -12,6 +12,7 @@ use eframe::egui::{
 pub use preview::PreviewState;
 
 use super::{choice, note, on_click};
+use crate::app::figure::LINE_SCALES;
 use crate::app::window::command::Command;
 use crate::app::window::figures::{self, Content, Formats};
 use crate::app::window::state::State;
@@ -100,6 +101,12 @@ fn form(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &Palet
             let dots = ui.add(DragValue::new(&mut figure.dpi).range(10.0..=2400.0).speed(5.0).max_decimals(0));
             dots.widget_info(|| WidgetInfo::labeled(egui::Role::SpinButton, true, "Resolution (dpi)"));
         });
+        row("line weight", &mut |ui| {
+            let [least, most] = LINE_SCALES;
+            let factor = ui.add(DragValue::new(&mut figure.line_scale).range(least..=most).speed(0.01).max_decimals(2));
+            factor.widget_info(|| WidgetInfo::labeled(egui::Role::SpinButton, true, "Factor on the widths of lines"));
+        });
+        row("text size", &mut |ui| field(ui, &mut figure.font_size, "Size of the text", "6 pt, or 12 pixels"));
         row("ink", &mut |ui| radios(ui, &mut figure.ink, [(Ink::Colour, "colour"), (Ink::Grey, "grey")]));
         row("ground", &mut |ui| radios(ui, &mut figure.transparent, [(false, "white"), (true, "transparent")]));
         let parts = [(false, "the whole mesh"), (true, "what is in view")];

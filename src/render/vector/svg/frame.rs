@@ -2,9 +2,10 @@
 
 use glam::DVec2;
 
-use crate::render::look::{Layer, Look};
+use super::{Sheet, Weights};
+use crate::render::look::Layer;
 
-/// Margin around the mesh in points: half of the widest line, and a little more.
+/// Margin around the mesh on paper in points: half of the widest line, and a little more.
 const MARGIN: f64 = 1.0;
 /// The margin with labels beside the boundary.
 const MARGIN_FOR_LABELS: f64 = 9.0;
@@ -22,21 +23,25 @@ pub struct SvgFrame {
     pub left_top: DVec2,
     /// Its size.
     pub size: DVec2,
+    /// How far lines and marks may reach beyond their points.
+    reach: f64,
 }
 
 impl SvgFrame {
     /// A frame at the top left of the page, with a box of the plane centred in it and scaled to fit.
-    pub fn fit(bounds: Option<[DVec2; 2]>, width: f64, height: Option<f64>, look: &Look) -> SvgFrame {
+    pub fn fit(bounds: Option<[DVec2; 2]>, width: f64, height: Option<f64>, sheet: &Sheet<'_>) -> SvgFrame {
+        let (look, Weights { line, text }) = (&sheet.look, sheet.weights);
         let [low, high] = bounds.unwrap_or([DVec2::ZERO, DVec2::ONE]);
         let size = high - low;
+        let has_labels = [Layer::H, Layer::Angles].iter().any(|layer| look.layers.has(*layer));
         let margin = match look.part {
             Some(_) => 0.0,
-            None if [Layer::H, Layer::Angles].iter().any(|layer| look.layers.has(*layer)) => MARGIN_FOR_LABELS,
-            None => MARGIN,
+            None if has_labels => (MARGIN_FOR_LABELS * text).max(MARGIN * line),
+            None => MARGIN * line,
         };
         // Limit the magnification of a tall picture, and give one without size a scale.
         let span = size.x.max(size.y * 0.1);
-        let mut scale = (width - 2.0 * margin) / if span > 0.0 { span } else { 1.0 };
+        let mut scale = (width - 2.0 * margin).max(1.0) / if span > 0.0 { span } else { 1.0 };
         let height = height.unwrap_or(size.y * scale + 2.0 * margin).max(1.0);
         let inner = (height - 2.0 * margin).max(1.0);
         if size.y * scale > inner {
@@ -49,6 +54,7 @@ impl SvgFrame {
             scale,
             left_top: DVec2::ZERO,
             size: page,
+            reach: 2.0 * line,
         }
     }
 
@@ -71,7 +77,7 @@ impl SvgFrame {
     pub fn sees(&self, corners: &[DVec2]) -> bool {
         let placed = corners.iter().map(|p| self.place(*p));
         let [low, high] = placed.fold([DVec2::INFINITY, DVec2::NEG_INFINITY], |[a, b], p| [a.min(p), b.max(p)]);
-        (high + 2.0).cmpge(self.left_top).all() && (low - 2.0).cmple(self.left_top + self.size).all()
+        (high + self.reach).cmpge(self.left_top).all() && (low - self.reach).cmple(self.left_top + self.size).all()
     }
 
     /// Whether a box on the page lies inside the frame.

@@ -2,14 +2,14 @@
 
 use glam::DVec2;
 
+use super::Weights;
 use super::frame::SvgFrame;
-use super::page::{Page, Path, width};
-use super::{LABEL, NOTE as NOTE_SIZE};
+use super::page::{Page, Path, Short, width};
 use crate::render::look::{Layer, Look};
 use crate::render::palette::{LETTER, NOTE};
 use crate::render::picture::Mark;
 
-/// Radius of nodes and wedges.
+/// Radius of nodes and wedges, on paper in points as all that follows.
 const NODE: f64 = 0.7;
 const WEDGE: f64 = 2.2;
 /// Radius of arcs, and the length of legs that an arc needs.
@@ -29,6 +29,7 @@ pub fn is_text(mark: &Mark) -> bool {
 pub struct Marks<'a> {
     page: &'a mut Page,
     frame: &'a SvgFrame,
+    weights: Weights,
     /// What no plate may cover, and boxes already occupied.
     taken: Vec<[DVec2; 2]>,
     has: [bool; 2],
@@ -38,7 +39,8 @@ impl<'a> Marks<'a> {
     /// Starts without marks.
     pub fn new(page: &'a mut Page, frame: &'a SvgFrame, look: &Look) -> Marks<'a> {
         let has = [Layer::Nodes, Layer::Ellipses].map(|layer| look.layers.has(layer));
-        Marks { page, frame, taken: Vec::new(), has }
+        let weights = page.weights();
+        Marks { page, frame, weights, taken: Vec::new(), has }
     }
 
     /// Draws marks: one path for each kind, then the text.
@@ -62,6 +64,11 @@ impl<'a> Marks<'a> {
         }
     }
 
+    /// A width on paper as it is here.
+    fn line(&self, width: f64) -> Short {
+        Short(width * self.weights.line)
+    }
+
     fn nodes(&mut self, marks: &[Mark]) {
         let mut path = Path::default();
         for mark in marks {
@@ -72,7 +79,7 @@ impl<'a> Marks<'a> {
                 path.walk([p, p].into_iter(), false);
             }
         }
-        let stroke = format!("stroke=\"{LETTER}\" stroke-width=\"{}\" stroke-linecap=\"round\"", 2.0 * NODE);
+        let stroke = format!("stroke=\"{LETTER}\" stroke-width=\"{}\" stroke-linecap=\"round\"", self.line(2.0 * NODE));
         self.page.path(&path, &format!("fill=\"none\" {stroke}"));
     }
 
@@ -81,7 +88,7 @@ impl<'a> Marks<'a> {
         for mark in marks {
             let Mark::Ellipse { at, axes } = mark else { continue };
             let (p, axes) = (self.frame.place(*at), axes.map(|axis| self.frame.turned(axis)));
-            if self.frame.sees(&[*at]) && axes.iter().all(|axis| axis.length() >= MINOR) {
+            if self.frame.sees(&[*at]) && axes.iter().all(|axis| axis.length() >= MINOR * self.weights.line) {
                 let point = |k: i32| {
                     let t = f64::from(k) * std::f64::consts::TAU / 32.0;
                     p + axes[0] * libm::cos(t) + axes[1] * libm::sin(t)
@@ -89,17 +96,18 @@ impl<'a> Marks<'a> {
                 path.walk((0..32).map(point), true);
             }
         }
-        self.page.path(&path, &format!("fill=\"none\" stroke=\"{NOTE}\" stroke-width=\"0.35\""));
+        self.page.path(&path, &format!("fill=\"none\" stroke=\"{NOTE}\" stroke-width=\"{}\"", self.line(0.35)));
     }
 
     fn wedges(&mut self, marks: &[Mark]) {
         let mut path = Path::default();
+        let radius = WEDGE * self.weights.line;
         for mark in marks {
             let Mark::Wedge { at, legs } = mark else { continue };
             let legs = legs.map(|leg| self.frame.turned(leg));
-            if self.frame.sees(&[*at]) && legs.iter().all(|leg| leg.length() >= 2.0 * WEDGE) {
+            if self.frame.sees(&[*at]) && legs.iter().all(|leg| leg.length() >= 2.0 * radius) {
                 let p = self.frame.place(*at);
-                path.walk(std::iter::once(p).chain(arc(p, legs, WEDGE)), true);
+                path.walk(std::iter::once(p).chain(arc(p, legs, radius)), true);
             }
         }
         self.page.path(&path, &format!("fill=\"{LETTER}\""));
@@ -113,27 +121,29 @@ impl<'a> Marks<'a> {
         }
         let away = self.frame.turned(at - from).try_normalize().unwrap_or(DVec2::NEG_Y);
         let text = letter.to_string();
-        let half = DVec2::new(0.5 * width(&text, LABEL) + 0.5, 0.4 * LABEL + 0.4);
+        let (label, k) = (self.weights.label(), self.weights.text);
+        let half = DVec2::new(0.5 * width(&text, label) + 0.5 * k, 0.4 * label + 0.4 * k);
         for turn in [0, 1, -1, 2, -2, 3, -3, 4] {
             let t = f64::from(turn) * std::f64::consts::FRAC_PI_4;
             let d = away.rotate(DVec2::new(libm::cos(t), libm::sin(t)));
-            let middle = p + d * (half.x.max(half.y) + 1.6);
-            if self.put(middle, half, &text, LABEL) {
+            let middle = p + d * (half.x.max(half.y) + 1.6 * k);
+            if self.put(middle, half, &text, label) {
                 return;
             }
         }
     }
 
     fn arc(&mut self, at: DVec2, legs: [DVec2; 2], text: &str, always: bool) {
+        let (note, k) = (self.weights.note(), self.weights.text);
         let (p, legs) = (self.frame.place(at), legs.map(|leg| self.frame.turned(leg)));
         let room = legs[0].length().min(legs[1].length());
-        if !self.frame.sees(&[at]) || (room < LEGS && !always) || room <= 0.0 {
+        if !self.frame.sees(&[at]) || (room < LEGS * k && !always) || room <= 0.0 {
             return;
         }
-        let points: Vec<DVec2> = arc(p, legs, ARC.min(0.8 * room)).collect();
+        let points: Vec<DVec2> = arc(p, legs, (ARC * k).min(0.8 * room)).collect();
         let Some(middle) = points.get(points.len() / 2) else { return };
         let d = (*middle - p).try_normalize().unwrap_or(DVec2::NEG_Y);
-        let half = DVec2::new(0.5 * width(text, NOTE_SIZE) + 0.3, 0.36 * NOTE_SIZE + 0.2);
+        let half = DVec2::new(0.5 * width(text, note) + 0.3 * k, 0.36 * note + 0.2 * k);
         let reach = (half.x * d.x.abs()) + (half.y * d.y.abs());
         // In a narrow corner, place the value where it has room between the legs.
         let across = (half.x * d.y.abs()) + (half.y * d.x.abs());
@@ -141,18 +151,19 @@ impl<'a> Marks<'a> {
         let turn = libm::atan2(-legs[0].perp_dot(legs[1]), legs[0].dot(legs[1]));
         let is_narrow = (0.0..NARROW).contains(&turn);
         let narrow = if is_narrow { (across / libm::tan(0.5 * turn).max(1e-3) + reach).min(0.9 * room) } else { 0.0 };
-        let away = ((*middle - p).length() + reach + 0.8).max(narrow);
-        if self.put(p + d * away, half, text, NOTE_SIZE) || always {
+        let away = ((*middle - p).length() + reach + 0.8 * k).max(narrow);
+        if self.put(p + d * away, half, text, note) || always {
             let mut path = Path::default();
             path.walk(points.into_iter(), false);
-            self.page.path(&path, &format!("fill=\"none\" stroke=\"{NOTE}\" stroke-width=\"0.4\""));
+            self.page.path(&path, &format!("fill=\"none\" stroke=\"{NOTE}\" stroke-width=\"{}\"", self.line(0.4)));
         }
     }
 
     /// Places a text beside a line longer than the text is high, on its right side (beyond the front) or on its left.
     fn beside(&mut self, ends: [DVec2; 2], text: &str) {
+        let (note, k) = (self.weights.note(), self.weights.text);
         let [p, q] = ends.map(|end| self.frame.place(end));
-        let half = DVec2::new(0.5 * width(text, NOTE_SIZE) + 0.4, 0.36 * NOTE_SIZE + 0.2);
+        let half = DVec2::new(0.5 * width(text, note) + 0.4 * k, 0.36 * note + 0.2 * k);
         let along = (q - p).try_normalize().unwrap_or(DVec2::X);
         // The extent of the text along the line.
         let needed = 2.0 * (half.x * along.x.abs()).max(half.y * along.y.abs()).min(half.x);
@@ -161,8 +172,8 @@ impl<'a> Marks<'a> {
         }
         let right = DVec2::new(-along.y, along.x);
         for d in [right, -right] {
-            let reach = half.x * d.x.abs() + half.y * d.y.abs() + 1.0;
-            if self.put(0.5 * (p + q) + d * reach, half, text, NOTE_SIZE) {
+            let reach = half.x * d.x.abs() + half.y * d.y.abs() + k.max(0.5 * self.weights.line);
+            if self.put(0.5 * (p + q) + d * reach, half, text, note) {
                 return;
             }
         }
@@ -170,16 +181,17 @@ impl<'a> Marks<'a> {
 
     /// Places a text over the far part of a line that is not short.
     fn over(&mut self, ends: [DVec2; 2], text: &str) {
+        let (note, k) = (self.weights.note(), self.weights.text);
         let [p, q] = ends.map(|end| self.frame.place(end));
-        if !self.frame.sees(&ends) || (q - p).length() < LEGS {
+        if !self.frame.sees(&ends) || (q - p).length() < LEGS * k {
             return;
         }
-        let half = DVec2::new(0.5 * width(text, NOTE_SIZE) + 0.4, 0.36 * NOTE_SIZE + 0.2);
+        let half = DVec2::new(0.5 * width(text, note) + 0.4 * k, 0.36 * note + 0.2 * k);
         let along = (q - p).normalize();
         // Beyond the end there is always room for one of several lines from a common point.
-        let beyond = q + along * (half.x * along.x.abs() + half.y * along.y.abs() + 1.0);
+        let beyond = q + along * (half.x * along.x.abs() + half.y * along.y.abs() + k);
         for middle in [p + 0.62 * (q - p), p + 0.8 * (q - p), p + 0.45 * (q - p), beyond] {
-            if self.put(middle, half, text, NOTE_SIZE) {
+            if self.put(middle, half, text, note) {
                 return;
             }
         }

@@ -7,6 +7,7 @@ use base64::engine::general_purpose::STANDARD;
 use glam::DVec2;
 
 use super::Sheet;
+use super::Weights;
 use crate::core::record::figure;
 use crate::render::palette::LETTER;
 
@@ -19,6 +20,7 @@ pub(in crate::render::vector) const FAMILY: &str = "Quadfront Figure";
 /// An SVG being written.
 pub struct Page {
     svg: String,
+    weights: Weights,
     hatched: bool,
 }
 
@@ -46,7 +48,12 @@ impl Page {
         if !sheet.look.transparent {
             let _ = writeln!(svg, "<rect width=\"{w}\" height=\"{h}\" fill=\"#FFFFFF\"/>");
         }
-        Page { svg, hatched: false }
+        Page { svg, weights: sheet.weights, hatched: false }
+    }
+
+    /// The weights of its medium.
+    pub fn weights(&self) -> Weights {
+        self.weights
     }
 
     /// Clips everything until [`Page::unclip`] to a box.
@@ -70,9 +77,12 @@ impl Page {
     /// Defines the hatching, once.
     pub fn define_hatch(&mut self) {
         if !std::mem::replace(&mut self.hatched, true) {
-            self.svg.push_str(
-                "<pattern id=\"hatch\" width=\"1.2\" height=\"1.2\" patternUnits=\"userSpaceOnUse\" \
-                 patternTransform=\"rotate(45)\"><rect width=\"0.3\" height=\"1.2\" fill=\"#404040\"/></pattern>\n",
+            let [apart, width] = [1.2, 0.3].map(|length| Short(length * self.weights.line));
+            let _ = writeln!(
+                self.svg,
+                "<pattern id=\"hatch\" width=\"{apart}\" height=\"{apart}\" patternUnits=\"userSpaceOnUse\" \
+                 patternTransform=\"rotate(45)\"><rect width=\"{width}\" height=\"{apart}\" fill=\"#404040\"/>\
+                 </pattern>"
             );
         }
     }
@@ -103,8 +113,9 @@ impl Page {
     fn placed_text(&mut self, place: &str, size: f64, anchor: &str, ink: &str, text: &str) {
         let _ = writeln!(
             self.svg,
-            "<text {place} font-family=\"{FAMILY}, IBM Plex Sans, Arial, sans-serif\" font-size=\"{size}\" \
+            "<text {place} font-family=\"{FAMILY}, IBM Plex Sans, Arial, sans-serif\" font-size=\"{}\" \
              text-anchor=\"{anchor}\" fill=\"{ink}\">{}</text>",
+            Short(size),
             escaped(text)
         );
     }

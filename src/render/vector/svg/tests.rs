@@ -44,7 +44,7 @@ fn the_frames_of_a_strip_are_equal_and_stand_three_millimetres_apart_with_one_sc
     // Several rows are equal too.
     let svg = strip(&["1", "2", "3"].map(frame), &Sheet { columns: Some(2), ..wide });
     let starts: Vec<_> = svg.split("<path fill=\"#FFFFFF\" d=\"").skip(1).map(|p| &p[..p.find('L').unwrap()]).collect();
-    let below = page::Short(49.0 + 50.0 + 1.9 * LABEL + GAP);
+    let below = page::Short(49.0 + 50.0 + 1.9 * sheet(0.0, None).weights.label() + GAP);
     assert_eq!(starts[2], format!("M1 {below}"));
 }
 
@@ -69,7 +69,7 @@ fn crowded_edges_are_thin_and_none_is_left_out() {
     let svg = write(&Picture::of_mesh(&mesh), &sheet(COLUMN, None));
     let thin = svg.split("<path").find(|path| path.contains("stroke-width=\"0.12\"")).unwrap();
     assert_eq!(thin.matches('M').count(), n as usize - 1);
-    assert!(!svg.contains("stroke-width=\"0.28\""));
+    assert!(!svg.contains("stroke-width=\"0.25\""));
 }
 
 #[test]
