@@ -7,6 +7,8 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand};
 
 use super::figure::FigureOptions;
+#[cfg(feature = "window")]
+use super::film::AnimateArguments;
 use super::input::{InputFormat, Stops, Until, input_format, mesh_format, mesh_use, setting, stops, until};
 use super::output::Target;
 use crate::core::case::{ImportOptions, MeshUse};
@@ -47,6 +49,9 @@ pub(super) enum Command {
     Sweep(SweepArguments),
     /// Draw a mesh, or states of a conversion, as SVG or PNG
     Render(RenderArguments),
+    /// Make a film of a conversion (GIF, animated PNG)
+    #[cfg(feature = "window")]
+    Animate(AnimateArguments),
     /// Write the notes on the bookmarked steps of a run as one page (HTML), with a figure of each
     Notes(NotesArguments),
     /// List the lessons of the tour; check a lesson, one of your own too, and print it
@@ -455,6 +460,10 @@ mod tests {
             "quadfront sweep example1 --over selection=table1,level --list",
             "quadfront sweep example1 --list=cells --over c=1:2:.5",
             "quadfront sweep example1 --collect cells -o a.json --show seconds",
+            #[cfg(feature = "window")]
+            "quadfront animate a --from nq=0 --to end --every 5 --camera follow --loop once --rate 12.5 -o a.gif",
+            #[cfg(feature = "window")]
+            "quadfront animate a --from step=20 --to step=90 --every event --captions --size 800x800 -o a.apng",
             "quadfront notes a.toml -o a.html --size 84mm",
             "quadfront cases --json",
             "quadfront",
@@ -479,6 +488,9 @@ mod tests {
             "quadfront sweep a --list --collect cells",
             "quadfront sweep a --show wobble",
             "quadfront sweep a --jobs 0",
+            "quadfront animate a --every 0 -o a.gif",
+            "quadfront animate a --rate 60 -o a.gif",
+            "quadfront animate a --from end -o a.gif",
         ] {
             assert!(Cli::try_parse_from(line.split(' ')).is_err(), "{line}");
         }

@@ -15,7 +15,7 @@ use crate::core::record::run_file;
 use crate::core::run::{Run, Shown};
 use crate::render::picture::Picture;
 use crate::render::vector::histogram::Histogram;
-use crate::render::vector::svg;
+use crate::render::vector::svg::{self, Sheet};
 
 /// A figure, ready to be written.
 #[cfg_attr(not(feature = "window"), expect(dead_code, reason = "a PNG embeds them"))]
@@ -40,7 +40,7 @@ impl Figure {
     /// A figure of states of a run; with `embeds` it contains the run.
     ///
     /// # Errors
-    /// The mesh file of the run can no longer be read.
+    /// The mesh file of the run can no longer be read; no room for a caption.
     pub fn of_run(run: &Run, frames: &[FigureFrame], options: &FigureOptions, embeds: bool) -> Result<Figure, Fault> {
         let strip = frames.len() > 1;
         let mut description = describe(&run.case);
@@ -58,7 +58,13 @@ impl Figure {
         } else {
             None
         };
+        let below = match frames {
+            [frame] => options.caption(&frame.caption),
+            _ => None,
+        };
+        below.as_ref().map_or(Ok(()), |caption| options.check_room(caption))?;
         let sheet = options.sheet(strip, &run.case.title, &description, embedded.as_deref());
+        let sheet = Sheet { caption: below, ..sheet };
         let svg = match frames {
             [FigureFrame { statistics: Some(statistics), .. }] => match options.plot {
                 Some(Plot::Angles) => Histogram::of_angles(statistics).write(&sheet),
@@ -119,7 +125,7 @@ impl Wanted {
 /// Runs to the wanted states and draws their figure; with `embeds` it contains the run.
 ///
 /// # Errors
-/// As the conversion; several states in one histogram.
+/// As the conversion; several states in one histogram, or with captions.
 pub(super) fn make(
     run: &Run,
     wanted: &[Wanted],
@@ -130,6 +136,7 @@ pub(super) fn make(
     if options.plot.is_some() && wanted.len() > 1 {
         return Err(Fault::new("A histogram shows one state").at("--plot").remedy("Name one stop with --at"));
     }
+    options.check_captions(wanted.len() == 1 && options.plot.is_none())?;
     let look = options.look(wanted.len() > 1);
     let frames = work::frames(run, wanted, &look, options.plot.is_some(), watch)?;
     Ok((Figure::of_run(run, &frames, options, embeds)?, frames))

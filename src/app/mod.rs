@@ -16,6 +16,8 @@ mod sweep;
 mod render;
 mod notes;
 #[cfg(feature = "window")]
+mod film;
+#[cfg(feature = "window")]
 pub mod window;
 
 use std::io::{self, Write};
@@ -71,6 +73,8 @@ pub fn run() -> ExitCode {
         Command::Reduce(arguments) => reduce::reduce(arguments).map(|()| ExitCode::SUCCESS),
         Command::Sweep(arguments) => sweep::sweep(arguments),
         Command::Notes(arguments) => notes::notes(arguments).map(|()| ExitCode::SUCCESS),
+        #[cfg(feature = "window")]
+        Command::Animate(arguments) => film::animate(arguments).map(|()| ExitCode::SUCCESS),
         Command::Render(arguments) => render::render(arguments).map(|()| ExitCode::SUCCESS),
         Command::Lesson(arguments) => lesson::lesson(arguments).map(|()| ExitCode::SUCCESS),
         Command::Cases(arguments) => cases::cases(arguments).map(|()| ExitCode::SUCCESS),

@@ -53,6 +53,7 @@ pub(super) fn page(run: &Run, options: &FigureOptions, embeds: bool, watch: &mut
     if options.plot.is_some() {
         return Err(Fault::new("Notes have pictures of the mesh, no histograms").at("--plot").remedy("Leave it out"));
     }
+    options.check_captions(false).map_err(|fault| fault.remedy("Leave it out: the page says it beside each figure"))?;
     if run.bookmarks.is_empty() {
         return Err(Fault::new("This run has no bookmarks, and so no notes")
             .remedy("Bookmark steps in the window (Ctrl+B) and save the run (Ctrl+S)"));

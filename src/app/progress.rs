@@ -154,6 +154,7 @@ pub(super) fn words(stage: Stage) -> &'static str {
         Stage::Convert => "Converting",
         Stage::Finish => "Cleaning up and smoothing",
         Stage::Check => "Checking and measuring",
+        Stage::Draw => "Drawing frames",
         Stage::Write => "Writing",
     }
 }

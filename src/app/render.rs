@@ -18,6 +18,7 @@ pub(super) fn render(arguments: &RenderArguments) -> Result<(), Fault> {
         && arguments.figure.plot.is_none()
         && let Some(mesh) = input::read_mesh(&source.input, source.from, &mut Progress::new(source.quiet))?
     {
+        arguments.figure.check_captions(false).map_err(|fault| fault.remedy("Leave it out for a mesh file"))?;
         let picture =
             Picture { title: source.input.clone(), ..Picture::of_mesh_by(&mesh, &arguments.figure.look(false)) };
         return output::write_figure(&arguments.out, &Figure::of_mesh(&picture, &arguments.figure));

@@ -6,9 +6,9 @@ use serde::Serialize;
 
 use crate::core::case::{Case, DomainSource, MeshUse, Parameters};
 use crate::core::convert::walk::walk_editing;
-use crate::core::convert::{Converter, Event, Phase, StepReport, Stop, Tell, conversion};
+use crate::core::convert::{Candidates, Converter, Event, Phase, StepReport, Stop, Tell, conversion};
 use crate::core::fault::Fault;
-use crate::core::mesh::{Mesh, Names, Touched};
+use crate::core::mesh::{Mesh, Names, NodeId, Touched};
 use crate::core::metric::Sizing;
 use crate::core::prepare::{self, Background};
 use crate::core::progress::{Stage, Watch};
@@ -136,7 +136,7 @@ pub(super) fn convert(
                     converter.keep_history();
                     births = Some(Births::of(&converter.mesh));
                 }
-                walk_editing(converter, at, watch, tell, &mut |c| {
+                walk_editing(converter, at, watch, tell, &mut |c, _| {
                     if let Some(births) = &mut births {
                         births.note(c);
                         shorten(c);
@@ -179,12 +179,14 @@ pub(super) struct FigureFrame {
     pub shown: ShownState,
     /// Its statistics, where they are plotted: of its quadrilaterals, or of its triangles where it has none.
     pub statistics: Option<Statistics>,
+    /// What the last step did, in a sentence; empty where that is not known.
+    pub caption: String,
 }
 
 impl FigureFrame {
-    /// A state, without statistics.
+    /// A state, without statistics and caption.
     pub fn of(seen: &Seen<'_>, look: &Look, shown: ShownState) -> FigureFrame {
-        FigureFrame { picture: Picture::of_state(seen, look), shown, statistics: None }
+        FigureFrame { picture: Picture::of_state(seen, look), shown, statistics: None, caption: String::new() }
     }
 }
 
@@ -201,33 +203,14 @@ pub(super) fn frames(
 ) -> Result<Vec<FigureFrame>, Fault> {
     let mut frames = Vec::new();
     let mut meshes = Vec::new();
-    let watches_changes = look.layers.has(Layer::Changed);
     let converted = conversion::convert_by(&run.case_in_force(), watch, &mut |converter, watch| {
         run.make_edits(converter, 0)?;
-        if watches_changes {
-            converter.keep_history();
-        }
-        // What the last step chose a side from, and what the next one does.
-        let watches_candidates = look.layers.has(Layer::Candidates);
-        let (mut tried, mut next) = (None, converter.candidates());
+        let mut walked = Walked::new(run, converter, look);
         for wanted in wanted {
-            walk_editing(converter, wanted.stop, watch, None, &mut |c| {
-                shorten(c);
-                run.make_edits(c, c.counts.steps)?;
-                if watches_candidates {
-                    (tried, next) = (next.take(), c.candidates());
-                }
-                Ok(())
-            })?;
-            let mut changed = Touched::default();
-            converter.note_last_step(&mut changed);
-            let (mesh, phase) = (&converter.mesh, converter.phase());
-            let (changed, candidates) = (changed.elements(), tried.as_ref());
-            let seen = Seen { mesh, parameters: converter.parameters(), phase, changed, candidates };
-            let shown = ShownState { step: converter.counts.steps, at: wanted.at, state: fingerprint(mesh, phase) };
-            frames.push(FigureFrame::of(&seen, look, shown));
+            walked.to(wanted.stop, watch, &mut |_, _| Ok(()))?;
+            frames.push(walked.frame(wanted.at));
             if plotted {
-                meshes.push(Export::of(mesh, &Names::default()));
+                meshes.push(Export::of(&walked.converter.mesh, &Names::default()));
             }
         }
         Ok(())
@@ -236,6 +219,89 @@ pub(super) fn frames(
         frame.statistics = Some(statistics(export, &converted.sizing)?);
     }
     Ok(frames)
+}
+
+/// A conversion on its way to the states that figures show.
+pub(super) struct Walked<'w, 'a> {
+    run: &'w Run,
+    look: &'w Look,
+    /// The conversion.
+    pub converter: &'w mut Converter<'a>,
+    /// Its last step.
+    pub last: LastStep,
+}
+
+/// What figures show of the last step.
+#[derive(Default)]
+pub(super) struct LastStep {
+    event: Option<Event>,
+    /// The base of the quadrilateral under way.
+    base: Option<[NodeId; 2]>,
+    /// What a side was chosen from, and what the next step chooses one from, where that is drawn.
+    tried: Option<Candidates>,
+    next: Option<Candidates>,
+}
+
+impl LastStep {
+    /// What it did, in a sentence.
+    pub fn caption(&self) -> String {
+        match &self.event {
+            Some(event) => plain(&narration(event, self.base)),
+            None => "The front is the boundary.".to_owned(),
+        }
+    }
+
+    /// The state after it as a figure; `at` is the stop that names it.
+    pub fn frame(&self, converter: &Converter<'_>, look: &Look, at: Option<Stop>) -> FigureFrame {
+        let mut changed = Touched::default();
+        converter.note_last_step(&mut changed);
+        let (mesh, phase) = (&converter.mesh, converter.phase());
+        let (changed, candidates) = (changed.elements(), self.tried.as_ref());
+        let seen = Seen { mesh, parameters: converter.parameters(), phase, changed, candidates };
+        let shown = ShownState { step: converter.counts.steps, at, state: fingerprint(mesh, phase) };
+        FigureFrame { caption: self.caption(), ..FigureFrame::of(&seen, look, shown) }
+    }
+}
+
+impl<'w, 'a> Walked<'w, 'a> {
+    /// Starts at step 0 of a run, whose edits are made.
+    pub fn new(run: &'w Run, converter: &'w mut Converter<'a>, look: &'w Look) -> Walked<'w, 'a> {
+        if look.layers.has(Layer::Changed) {
+            converter.keep_history();
+        }
+        let next = if look.layers.has(Layer::Candidates) { converter.candidates() } else { None };
+        Walked { run, look, converter, last: LastStep { next, ..LastStep::default() } }
+    }
+
+    /// Goes on to a stop, or to the end; `each` is told of every step.
+    ///
+    /// # Errors
+    /// As the conversion, and those of `each`; it ends before the stop.
+    pub fn to(
+        &mut self,
+        stop: Option<Stop>,
+        watch: &mut dyn Watch,
+        each: &mut dyn FnMut(&Converter<'_>, &LastStep) -> Result<(), Fault>,
+    ) -> Result<(), Fault> {
+        let Walked { run, look, converter, last } = self;
+        walk_editing(converter, stop, watch, None, &mut |c, event| {
+            shorten(c);
+            run.make_edits(c, c.counts.steps)?;
+            if look.layers.has(Layer::Candidates) {
+                (last.tried, last.next) = (last.next.take(), c.candidates());
+            }
+            if let Event::BaseSelected { a, b, .. } = *event {
+                last.base = Some([a, b]);
+            }
+            last.event = Some(*event);
+            each(c, last)
+        })
+    }
+
+    /// The state that it is in, as a figure; `at` is the stop that names it.
+    pub fn frame(&self, at: Option<Stop>) -> FigureFrame {
+        self.last.frame(self.converter, self.look, at)
+    }
 }
 
 /// Drops all but the last step of the journal now and then, where only that one is needed.

@@ -28,6 +28,8 @@ pub enum Stage {
     Finish,
     /// Checking and measuring.
     Check,
+    /// Drawing the frames of a film.
+    Draw,
     /// Writing files.
     Write,
 }

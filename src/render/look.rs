@@ -15,6 +15,8 @@ pub enum Ink {
     /// For print in colour.
     #[default]
     Colour,
+    /// In colour on a dark ground, for screens.
+    Dark,
 }
 
 worded! {
@@ -51,6 +53,20 @@ worded! {
         Ellipses = "ellipses",
         /// A scale bar.
         Scale = "scale",
+    }
+}
+
+impl Ink {
+    /// All inks.
+    pub const ALL: [Ink; 3] = [Ink::Colour, Ink::Grey, Ink::Dark];
+
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Ink::Colour => "colour",
+            Ink::Grey => "grey",
+            Ink::Dark => "dark",
+        }
     }
 }
 
@@ -150,4 +166,6 @@ pub struct Look {
     pub from: Bearing,
     /// How hidden lines are drawn.
     pub hidden: HiddenLines,
+    /// Whether a mesh on surfaces is drawn in its parametric plane.
+    pub parametric: bool,
 }

@@ -10,6 +10,9 @@ pub mod scene;
 pub mod refused;
 pub mod pick;
 pub mod vector;
+pub mod following;
+#[cfg(feature = "window")]
+pub mod film;
 #[cfg(feature = "window")]
 pub mod gpu;
 #[cfg(test)]

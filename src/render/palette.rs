@@ -223,41 +223,68 @@ pub const CROWDED: f64 = 0.4;
 /// The fill of areas that the last step changed, without colours: the hatching that the writer defines.
 pub const HATCH: &str = "url(#hatch)";
 
+/// The ground of figures, and of the plates under their labels.
+pub fn ground(ink: Ink) -> &'static str {
+    if ink == Ink::Dark { "#0C0F12" } else { "#FFFFFF" }
+}
+
 /// The ink of letters and wedges in figures.
-pub const LETTER: &str = "#000000";
+pub fn letter(ink: Ink) -> &'static str {
+    if ink == Ink::Dark { "#E6EAEE" } else { "#000000" }
+}
+
 /// The ink of notes, axes, arcs and ellipses in figures.
-pub const NOTE: &str = "#404040";
+pub fn note(ink: Ink) -> &'static str {
+    if ink == Ink::Dark { "#8A939E" } else { "#404040" }
+}
+
+/// All colours of figures in an ink: red, green, blue.
+pub fn colours(ink: Ink) -> Vec<[u8; 3]> {
+    let of_roles = Role::ALL.into_iter().flat_map(|role| {
+        let style = figure(role, ink);
+        [style.fill, style.stroke].into_iter().flatten()
+    });
+    let all = [ground(ink), letter(ink), note(ink)].into_iter().chain(of_roles);
+    // The hatching has a colour that a line has, too.
+    let number = |text: &str| u32::from_str_radix(text.strip_prefix('#')?, 16).ok();
+    all.filter_map(number).map(|rgb| [16, 8, 0].map(|shift| (rgb >> shift) as u8)).collect()
+}
 
 /// The two series of a histogram in a figure: fill and outline of its bars.
 pub fn bars(ink: Ink) -> [[&'static str; 2]; 2] {
     match ink {
         Ink::Grey => [["#808080", "#808080"], ["#FFFFFF", "#404040"]],
         Ink::Colour => [["#00659C", "#00659C"], ["#FFFFFF", "#7C70DA"]],
+        Ink::Dark => [["#74CDF7", "#74CDF7"], ["#0C0F12", "#7E96F5"]],
     }
 }
 
 /// The `figure` palette. The widths are for paper, a quarter to three quarters of a point: in a column of 84 mm lines
 /// neither merge nor fade. `Weights` has the factor for other media.
 pub fn figure(role: Role, ink: Ink) -> Style {
-    let of_ink = |grey, colour| Some(if ink == Ink::Grey { grey } else { colour });
-    let area = |grey, colour| Style { fill: of_ink(grey, colour), stroke: None, width: 0.0, dash: None };
-    let line = |grey, colour, width| Style { fill: None, stroke: of_ink(grey, colour), width, dash: None };
+    let of_ink = |grey, colour, dark| match ink {
+        Ink::Grey => Some(grey),
+        Ink::Colour => Some(colour),
+        Ink::Dark => Some(dark),
+    };
+    let area = |grey, colour, dark| Style { fill: of_ink(grey, colour, dark), stroke: None, width: 0.0, dash: None };
+    let line = |grey, colour, dark, width| Style { fill: None, stroke: of_ink(grey, colour, dark), width, dash: None };
     match role {
-        Role::LiveTriangle => area("#FFFFFF", "#FFFFFF"),
-        Role::DeadQuad => area("#E4E4E4", "#DBE4EC"),
-        Role::Changed => area(HATCH, "#A6DCCB"),
-        Role::LiveEdge => line("#9A9A9A", "#9A9A9A", 0.25),
-        Role::DeadEdge => line("#6B6B6B", "#6F8496", 0.25),
-        Role::ChangedEdge => line("#404040", "#00806A", 0.4),
-        Role::Boundary => line("#000000", "#20262C", 0.45),
-        Role::Front(4) => line("#808080", "#6E7A87", 0.4),
-        Role::Front(3) => line("#404040", "#7C70DA", 0.5),
-        Role::Front(2) => line("#404040", "#00659C", 0.5),
-        Role::Front(_) => line("#000000", "#002B45", 0.55),
-        Role::Refused => Style { dash: Some([0.4, 1.2]), ..line("#404040", "#616A74", 0.4) },
-        Role::Side => line("#000000", "#C77812", 0.55),
-        Role::Top => Style { dash: Some([2.0, 1.3]), ..line("#000000", "#C77812", 0.5) },
-        Role::Base => line("#000000", "#AD4E00", 0.75),
+        Role::LiveTriangle => area("#FFFFFF", "#FFFFFF", "#161B20"),
+        Role::DeadQuad => area("#E4E4E4", "#DBE4EC", "#22303D"),
+        Role::Changed => area(HATCH, "#A6DCCB", "#17453F"),
+        Role::LiveEdge => line("#9A9A9A", "#9A9A9A", "#465059", 0.25),
+        Role::DeadEdge => line("#6B6B6B", "#6F8496", "#566C80", 0.25),
+        Role::ChangedEdge => line("#404040", "#00806A", "#45D6B5", 0.4),
+        Role::Boundary => line("#000000", "#20262C", "#F0EADB", 0.45),
+        Role::Front(4) => line("#808080", "#6E7A87", "#8798A9", 0.4),
+        Role::Front(3) => line("#404040", "#7C70DA", "#7E96F5", 0.5),
+        Role::Front(2) => line("#404040", "#00659C", "#74CDF7", 0.5),
+        Role::Front(_) => line("#000000", "#002B45", "#CFF5FF", 0.55),
+        Role::Refused => Style { dash: Some([0.4, 1.2]), ..line("#404040", "#616A74", "#8A939E", 0.4) },
+        Role::Side => line("#000000", "#C77812", "#FFD690", 0.55),
+        Role::Top => Style { dash: Some([2.0, 1.3]), ..line("#000000", "#C77812", "#FFD690", 0.5) },
+        Role::Base => line("#000000", "#AD4E00", "#FFB01F", 0.75),
     }
 }
 
@@ -308,6 +335,36 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn the_dark_ink_of_figures_has_the_colours_of_the_dark_theme() {
+        let of = |role| {
+            let style = figure(role, Ink::Dark);
+            style.fill.or(style.stroke).unwrap_or_default().to_owned()
+        };
+        for (role, colour) in [
+            (Role::LiveTriangle, DARK.live),
+            (Role::DeadQuad, DARK.dead),
+            (Role::Changed, DARK.changed),
+            (Role::LiveEdge, DARK.live_edge),
+            (Role::DeadEdge, DARK.dead_edge),
+            (Role::ChangedEdge, DARK.changed_edge),
+            (Role::Boundary, DARK.boundary),
+            (Role::Front(1), DARK.front[0]),
+            (Role::Front(2), DARK.front[1]),
+            (Role::Front(3), DARK.front[2]),
+            (Role::Front(4), DARK.front[3]),
+            (Role::Refused, DARK.refused),
+            (Role::Side, DARK.side),
+            (Role::Top, DARK.side),
+            (Role::Base, DARK.base),
+        ] {
+            assert_eq!(of(role), colour.to_string(), "{role:?}");
+        }
+        let inks = [ground(Ink::Dark), letter(Ink::Dark), note(Ink::Dark)];
+        assert_eq!(inks, [DARK.ground, DARK.label, DARK.weak].map(|colour| colour.to_string()));
+        assert!(colours(Ink::Dark).contains(&[0xFF, 0xB0, 0x1F]) && colours(Ink::Grey).contains(&[0x40; 3]));
     }
 
     #[test]

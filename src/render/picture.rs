@@ -286,10 +286,14 @@ impl Picture {
     /// quadrilateral, and the marks of the layers that are on.
     pub fn of_state(seen: &Seen<'_>, look: &Look) -> Picture {
         let (Seen { mesh, parameters, phase, changed, candidates }, layers) = (*seen, look.layers);
-        if mesh.embedding().is_some() {
+        if mesh.embedding().is_some() && !look.parametric {
             return Picture::of_state_in_space(seen, look);
         }
-        let mut picture = Picture::of_mesh(&Export::of(mesh, &Names::default()).file);
+        let export = Export::of(mesh, &Names::default());
+        let mut picture = match mesh.embedding() {
+            None => Picture::of_mesh(&export.file),
+            Some(_) => Picture::as_it_lies(&in_its_plane(export)).0,
+        };
         if layers.has(Layer::Changed) {
             changed.iter().filter(|e| mesh.has_element(**e)).for_each(|e| picture.add_changed(mesh, *e));
         }
@@ -390,6 +394,11 @@ impl Picture {
         let points = points.filter(|p| p.is_finite());
         points.map(|p| [p, p]).reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])])
     }
+}
+
+/// A mesh on surfaces in its parametric plane, in which each chart has nodes of its own.
+fn in_its_plane(Export { uv, triangles, quads, .. }: Export) -> MeshFile {
+    MeshFile { points: uv.iter().map(|p| p.extend(0.0)).collect(), triangles, quads, ..MeshFile::default() }
 }
 
 /// A corner of the front: its position and its legs, anticlockwise.

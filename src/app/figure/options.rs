@@ -9,7 +9,7 @@ use crate::core::fault::Fault;
 use crate::core::run::Shown;
 use crate::render::camera::Bearing;
 use crate::render::look::{FigurePart, HiddenLines, Ink, Layer, Layers, Look};
-use crate::render::vector::svg::{COLUMN, MILLIMETRE, PAGE, Sheet};
+use crate::render::vector::svg::{COLUMN, Caption, MILLIMETRE, PAGE, Sheet};
 use crate::render::vector::weights::{NOTE, Weights};
 
 /// Dots per inch of line art in print, and of screens.
@@ -146,9 +146,9 @@ impl FromStr for PartWords {
 /// Parses an ink.
 fn ink(text: &str) -> Result<Ink, String> {
     match text {
-        "grey" | "gray" => Ok(Ink::Grey),
-        "colour" | "color" => Ok(Ink::Colour),
-        _ => Err("write grey or colour".to_owned()),
+        "gray" => Ok(Ink::Grey),
+        "color" => Ok(Ink::Colour),
+        _ => Ink::ALL.into_iter().find(|ink| ink.name() == text).ok_or_else(|| "write grey, colour or dark".to_owned()),
     }
 }
 
@@ -199,10 +199,10 @@ pub(in crate::app) struct FigureOptions {
     /// [default: 6 pt, with a size in pixels 12]
     #[arg(long, value_name = "NUMBER", value_parser = font_size)]
     pub font_size: Option<f64>,
-    /// Ink: grey or colour
+    /// Ink: grey, colour, or dark: in colour on a dark ground, for screens
     #[arg(long, value_name = "INK", value_parser = ink)]
     pub ink: Option<Ink>,
-    /// Leave out the white background
+    /// Leave out the background
     #[arg(long, value_name = "YES", num_args = 0..=1, require_equals = true, default_missing_value = "true")]
     pub transparent: Option<bool>,
     /// Layers to draw: names out of live, dead, changed, boundary, front, wedges, decision, candidates, letters, nodes,
@@ -222,6 +222,12 @@ pub(in crate::app) struct FigureOptions {
     /// Hidden lines of a mesh in space: off, faint or shown
     #[arg(long, value_name = "off|faint|shown", value_parser = hidden_lines)]
     pub hidden: Option<HiddenLines>,
+    /// Draw a mesh on surfaces in its parametric plane, chart beside chart
+    #[arg(long, value_name = "YES", num_args = 0..=1, require_equals = true, default_missing_value = "true")]
+    pub parametric: Option<bool>,
+    /// Write below the mesh what the last step did, in a sentence
+    #[arg(long, value_name = "YES", num_args = 0..=1, require_equals = true, default_missing_value = "true")]
+    pub captions: Option<bool>,
     /// Frames side by side in a strip [default: at most 4, in rows of equal length]
     #[arg(long, value_name = "NUMBER", value_parser = clap::value_parser!(u32).range(1..=26))]
     pub columns: Option<u32>,
@@ -238,7 +244,6 @@ struct Words {
 impl FigureOptions {
     /// The options as command-line arguments.
     pub fn words(&self) -> Vec<String> {
-        let inks = |ink| if ink == Ink::Grey { "grey" } else { "colour" };
         let plots = |plot| if plot == Plot::Lengths { "lengths" } else { "angles" };
         let part = |PartWords(part): PartWords| format!("{},{},{}", part.centre.x, part.centre.y, part.height);
         let words = [
@@ -246,13 +251,15 @@ impl FigureOptions {
             self.dpi.map(|dpi| format!("--dpi={dpi}")),
             self.line_scale.map(|factor| format!("--line-scale={factor}")),
             self.font_size.map(|size| format!("--font-size={size}")),
-            self.ink.map(|ink| format!("--ink={}", inks(ink))),
+            self.ink.map(|ink| format!("--ink={}", ink.name())),
             self.transparent.map(|yes| format!("--transparent={yes}")),
             self.layers.as_ref().map(|layers| format!("--layers={}", layers.0)),
             self.plot.map(|plot| format!("--plot={}", plots(plot))),
             self.part.map(|words| format!("--part={}", part(words))),
             self.view.map(|side| format!("--view={side}")),
             self.hidden.map(|hidden| format!("--hidden={}", hidden.name())),
+            self.parametric.map(|yes| format!("--parametric={yes}")),
+            self.captions.map(|yes| format!("--captions={yes}")),
             self.columns.map(|columns| format!("--columns={columns}")),
         ];
         words.into_iter().flatten().collect()
@@ -276,7 +283,10 @@ impl FigureOptions {
         macro_rules! completed {
             ($($option:ident),*) => { FigureOptions { $($option: self.$option.clone().or(theirs.$option),)* } };
         }
-        Ok(completed!(size, dpi, line_scale, font_size, ink, transparent, layers, plot, part, view, hidden, columns))
+        Ok(completed!(
+            size, dpi, line_scale, font_size, ink, transparent, layers, plot, part, view, hidden, parametric, captions,
+            columns
+        ))
     }
 
     /// The look of the figure.
@@ -290,6 +300,7 @@ impl FigureOptions {
             part: self.part.map(|words| words.0),
             from: self.view.unwrap_or_default(),
             hidden: self.hidden.unwrap_or_default(),
+            parametric: self.parametric.unwrap_or(false),
         }
     }
 
@@ -307,7 +318,8 @@ impl FigureOptions {
             Some(Size::Pixels(width, height)) => (f64::from(width) * point, height.map(|h| f64::from(h) * point)),
         };
         let columns = self.columns.map(|columns| columns as usize);
-        Sheet { title, description, run, width, height, look: self.look(strip), columns, weights: self.weights() }
+        let (look, weights) = (self.look(strip), self.weights());
+        Sheet { title, description, run, width, height, look, columns, weights, extent: None, caption: None }
     }
 
     /// The weights of lines and text.
@@ -316,6 +328,39 @@ impl FigureOptions {
         let usual = pixel.map_or(Weights::PAPER, Weights::of_pixels);
         let size = self.font_size.map(|size| size * pixel.unwrap_or(1.0));
         Weights { line: usual.line * self.line_scale.unwrap_or(1.0), text: size.map_or(usual.text, |size| size / NOTE) }
+    }
+
+    /// Refuses captions where a figure does not show one state of a run.
+    ///
+    /// # Errors
+    /// There shall be captions.
+    pub fn check_captions(&self, shows_a_state: bool) -> Result<(), Fault> {
+        if shows_a_state || self.captions != Some(true) {
+            return Ok(());
+        }
+        Err(Fault::new("A caption says what led to one state of a mesh")
+            .at("--captions")
+            .remedy("Name one stop with --at, or leave it out"))
+    }
+
+    /// Refuses a caption that leaves less than half of a page of given height to the mesh.
+    ///
+    /// # Errors
+    /// It does.
+    pub fn check_room(&self, caption: &Caption<'_>) -> Result<(), Fault> {
+        let sheet = self.sheet(false, "", "", None);
+        if sheet.height.is_none_or(|height| 2.0 * caption.height(sheet.width) <= height) {
+            return Ok(());
+        }
+        let rows = caption.wrapped(sheet.width).len().max(caption.rows);
+        Err(Fault::new(format!("{rows} rows of captions leave too little room for the mesh"))
+            .at("--size")
+            .remedy("Choose a larger size, or leave its height out"))
+    }
+
+    /// The caption of a figure, where there shall be one.
+    pub fn caption<'a>(&self, text: &'a str) -> Option<Caption<'a>> {
+        self.captions.unwrap_or(false).then_some(Caption { text, size: self.weights().label(), rows: 0 })
     }
 }
 
@@ -333,6 +378,7 @@ mod tests {
             "--view=-30,27.5,4 --part=0,0,3",
             "--view=x --hidden=faint",
             "--size=640x480 --line-scale=1.5 --font-size=14",
+            "--ink=dark --captions=true --parametric=true",
         ] {
             let words: Vec<String> = line.split_whitespace().map(str::to_owned).collect();
             let options = FigureOptions::from_words(&words).unwrap();

@@ -283,7 +283,7 @@ impl App {
             // The notes cover neither the mesh nor the breakpoints.
             let place = self.layout.place_of(Pane::Front).unwrap_or(views);
             panels::notes::show(&context, place, state, asked, palette);
-            panels::figure::show(&context, state, &mut local.figure, asked, palette);
+            panels::figure::show(&context, window, &mut local.figure, asked, palette);
         }
         panels::messages::show(&context, views, window, asked, palette);
         panels::over::show(&context, window, &mut local.over, asked, palette);

@@ -9,6 +9,7 @@ pub use keys::{Purpose, groups, keys};
 pub use rules::Rules;
 
 use super::figures::{FigureForm, Formats};
+use super::film::FilmCommand;
 use super::import::{Gesture, ImportOptions};
 use super::layout::Pane;
 use super::lists::ListKind;
@@ -164,6 +165,8 @@ pub enum Command {
     ChooseFolder,
     /// Save a figure as the panel for figures says, in these formats.
     SaveFigure(Formats),
+    /// Make a film as the panel for figures says, or stop that.
+    Film(FilmCommand),
     /// Open the file again.
     Reopen,
     /// Show or hide the notes on the case.
@@ -311,6 +314,7 @@ impl Command {
                 | Command::CancelImport
                 | Command::Escape
                 | Command::Stop
+                | Command::Film(FilmCommand::Stop)
                 | Command::Sweep(SweepCommand::Stop | SweepCommand::Set(_))
                 | Command::Fit
                 | Command::LookFrom(_)

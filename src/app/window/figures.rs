@@ -8,6 +8,7 @@ use std::sync::mpsc::Receiver;
 use eframe::egui::ColorImage;
 
 use super::files::{self, Writing, free_path};
+use super::film::FilmForm;
 use super::session::{Moment, Opened, Wake};
 use super::state::{State, ViewCamera};
 use crate::core::kernel::worded::worded;
@@ -26,7 +27,7 @@ use crate::core::run::{Bookmark, Run, Shown, ShownState};
 use crate::render::camera::Bearing;
 use crate::render::look::{FigurePart, HiddenLines, Ink, Layer, Layers};
 use crate::render::orthographic::View;
-use crate::render::picture::{Picture, Seen};
+use crate::render::picture::Seen;
 use crate::render::vector::png;
 
 worded! {
@@ -69,6 +70,8 @@ worded! {
         Lengths = "edge lengths (fig. 23)",
         /// Angles of the current state.
         Angles = "angles (fig. 24)",
+        /// The conversion, from one state to the next.
+        Film = "the conversion, as a film",
     }
 }
 
@@ -96,6 +99,8 @@ pub struct FigureForm {
     pub folder: String,
     /// Name without its extension; empty: from case and step.
     pub name: String,
+    /// The film, where it shows one.
+    pub film: FilmForm,
 }
 
 impl Default for FigureForm {
@@ -113,6 +118,7 @@ impl Default for FigureForm {
             in_view: false,
             folder: String::new(),
             name: String::new(),
+            film: FilmForm::default(),
         }
     }
 }
@@ -174,13 +180,15 @@ impl FigureForm {
             dpi: (self.dpi != 300.0).then_some(self.dpi),
             line_scale: (self.line_scale != 1.0).then_some(self.line_scale),
             font_size,
-            ink: (self.ink == Ink::Grey).then_some(Ink::Grey),
+            ink: (self.ink != Ink::default()).then_some(self.ink),
             transparent: self.transparent.then_some(true),
             layers: (!self.changed.is_empty()).then(|| LayerWords::exactly(layers)),
             plot,
             part: part.map(|part| PartWords(part.0)),
             view: view.map(|view| view.0),
             hidden: view.map(|view| view.1).filter(|hidden| *hidden != HiddenLines::Off),
+            parametric: None,
+            captions: None,
             columns: None,
         })
     }
@@ -232,7 +240,7 @@ pub fn names(state: &State, formats: Formats) -> Vec<PathBuf> {
 }
 
 /// The path of the figure without its extension.
-fn stem(state: &State) -> String {
+pub fn stem(state: &State) -> String {
     let form = &state.workspace().figure;
     let step = state.run().moment.as_ref().map_or(0, |moment| moment.step);
     let case = state.run().opened.as_ref().map_or("figure", |opened| opened.run.case.name.as_str());
@@ -241,6 +249,7 @@ fn stem(state: &State) -> String {
         ("", Content::Lengths) => format!("{case}-step-{step}-lengths"),
         ("", Content::Angles) => format!("{case}-step-{step}-angles"),
         ("", Content::Bookmarks | Content::Stops) => format!("{case}-strip"),
+        ("", Content::Film) => format!("{case}-film"),
         (name, _) => name.to_owned(),
     };
     Path::new(form.folder.trim()).join(name).display().to_string()
@@ -256,6 +265,36 @@ fn maker(state: &State) -> Result<Option<Maker>, Fault> {
     else {
         return Ok(None);
     };
+    let options = options(state, &moment, form.in_view)?;
+    let wanted = if form.is_strip() { Some(form.wanted(&state.document().bookmarks)?) } else { None };
+    Ok(Some(Box::new(move || match wanted {
+        Some(wanted) => Ok(figure::make(&current, &wanted, &options, true, &mut Nobody)?.0),
+        None => of_state(&moment, &opened, &current, &options),
+    })))
+}
+
+/// The options of the frames of a film.
+///
+/// # Errors
+/// If the form has no meaning.
+pub fn options_of_film(state: &State) -> Result<FigureOptions, Fault> {
+    let form = &state.workspace().figure;
+    let Some(moment) = &state.run().moment else { return Err(Fault::new("Nothing is open")) };
+    // A camera that follows chooses the part itself.
+    let options = options(state, moment, form.in_view && !form.film.follows)?;
+    // Surfaces are filmed as they are seen.
+    let parametric = moment.mesh.embedding().is_some() && !state.is_in_space();
+    Ok(FigureOptions {
+        transparent: None,
+        parametric: parametric.then_some(true),
+        captions: form.film.captions.then_some(true),
+        ..options
+    })
+}
+
+/// What the panel describes, as options of the command line.
+fn options(state: &State, moment: &Moment, in_view: bool) -> Result<FigureOptions, Fault> {
+    let form = &state.workspace().figure;
     // Surfaces are seen as in the window; meshes on them are drawn in space whatever it shows.
     let on_surfaces = moment.mesh.embedding().is_some();
     let ViewCamera { camera, size, .. } = match (on_surfaces, state.is_in_space()) {
@@ -264,16 +303,11 @@ fn maker(state: &State) -> Result<Option<Maker>, Fault> {
         (true, false) => ViewCamera::default(),
     };
     let side = camera.filter(|_| on_surfaces).map(|camera| Bearing::of_turn(camera.turn));
-    let part = camera.filter(|_| form.in_view && size.min_element() > 0.0).map(|camera| {
+    let part = camera.filter(|_| in_view && size.min_element() > 0.0).map(|camera| {
         let centre = side.map_or(camera.centre.truncate(), |side| View::from(side).place(camera.centre));
         (FigurePart { centre, height: size.y / camera.points_per_unit() }, size.y / size.x)
     });
-    let options = form.options(part, side.map(|side| (side, state.workspace().surfaces.hidden)))?;
-    let wanted = if form.is_strip() { Some(form.wanted(&state.document().bookmarks)?) } else { None };
-    Ok(Some(Box::new(move || match wanted {
-        Some(wanted) => Ok(figure::make(&current, &wanted, &options, true, &mut Nobody)?.0),
-        None => of_state(&moment, &opened, &current, &options),
-    })))
+    form.options(part, side.map(|side| (side, state.workspace().surfaces.hidden)))
 }
 
 /// Starts to write the page with the notes on bookmarked steps, on a thread of its own, in the working folder; does
@@ -318,8 +352,7 @@ fn of_state(moment: &Arc<Moment>, opened: &Arc<Opened>, run: &Run, options: &Fig
         Some(_) => Some(work::statistics(&Export::of(mesh, &Names::default()), &opened.background.sizing)?),
         None => None,
     };
-    let frame =
-        FigureFrame { picture: Picture::of_state(&seen, &options.look(false)), shown: shown(moment), statistics };
+    let frame = FigureFrame { statistics, ..FigureFrame::of(&seen, &options.look(false), shown(moment)) };
     Figure::of_run(run, &[frame], options, true)
 }
 

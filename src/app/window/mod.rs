@@ -13,6 +13,7 @@ mod command;
 mod files;
 mod import;
 mod pair;
+mod film;
 mod reducing;
 mod settings;
 mod graphics;

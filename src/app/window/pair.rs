@@ -268,6 +268,7 @@ impl Command {
                 | Command::Sweep(_)
                 | Command::Screenshot
                 | Command::SetFigure(_)
+                | Command::Film(_)
                 | Command::Reveal(_)
                 | Command::Arrange(_)
                 | Command::ResetLayout

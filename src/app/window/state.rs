@@ -19,6 +19,7 @@ pub use view_state::{FrameState, Look, Overlay, ViewCamera, ViewKind, ViewState}
 pub use workspace::{Breakpoint, Document, SurfaceStyle, SurfaceView, Watchpoint, Workspace};
 
 use super::autosave::Marks;
+use super::film::FilmWork;
 use super::reducing::Reducing;
 use super::session::{Moment, Stops, Wake};
 use super::sweep::SweepWork;
@@ -37,6 +38,8 @@ pub struct State {
     frame: FrameState,
     /// The sweep, which outlasts the run that it was begun with.
     sweep: Option<SweepWork>,
+    /// The film of the window, once there is one.
+    film: Option<FilmWork>,
     /// The reduction of the run, once there is one.
     reducing: Option<Reducing>,
     /// The pair that this run is the first one of.
@@ -55,6 +58,7 @@ impl State {
             view: ViewState::default(),
             frame: FrameState::default(),
             sweep: None,
+            film: None,
             reducing: None,
             pair: None,
             is_second: false,
@@ -89,6 +93,11 @@ impl State {
     /// The reduction of the run, once there is one.
     pub fn reducing(&self) -> Option<&Reducing> {
         self.reducing.as_ref()
+    }
+
+    /// The film of the window, once there is one.
+    pub fn film(&self) -> Option<&FilmWork> {
+        self.film.as_ref()
     }
 
     /// The sweep of the window, once there is one.

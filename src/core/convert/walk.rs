@@ -49,7 +49,8 @@ impl FromStr for Stop {
 }
 
 impl Stop {
-    fn is_reached(self, converter: &Converter<'_>) -> bool {
+    /// Whether a converter has reached it.
+    pub fn is_reached(self, converter: &Converter<'_>) -> bool {
         match self {
             Stop::Quads(quads) => quads <= converter.standing() && !converter.phase().is_local_post_processing(),
             Stop::Step(step) => step <= converter.counts.steps,
@@ -102,10 +103,11 @@ pub fn walk(
     watch: &mut dyn Watch,
     tell: Option<Tell<'_>>,
 ) -> Result<(), Fault> {
-    walk_editing(converter, stop, watch, tell, &mut |_| Ok(()))
+    walk_editing(converter, stop, watch, tell, &mut |_, _| Ok(()))
 }
 
-/// As [`walk`]; after each step `edit` may change parameters, or pick the next base segment.
+/// As [`walk`]; after each step `edit`, which is told what the step did, may change parameters or pick the next base
+/// segment.
 ///
 /// # Errors
 /// As [`walk`], and those of `edit`.
@@ -114,7 +116,7 @@ pub fn walk_editing(
     stop: Option<Stop>,
     watch: &mut dyn Watch,
     mut tell: Option<Tell<'_>>,
-    edit: &mut dyn FnMut(&mut Converter<'_>) -> Result<(), Fault>,
+    edit: &mut dyn FnMut(&mut Converter<'_>, &Event) -> Result<(), Fault>,
 ) -> Result<(), Fault> {
     let total = converter.mesh.element_count() as u64;
     watch.tell(Stage::Convert, 0, total);
@@ -148,7 +150,7 @@ pub fn walk_editing(
             let narrow = narrow.as_ref().filter(|_| event.is_about_a_split());
             tell(&StepReport { step, nq, event: &event, candidates, crossings, loops, narrow, quality });
         }
-        edit(converter)?;
+        edit(converter, &event)?;
         if shown + 1024 <= nq && !matches!(converter.phase(), Phase::PostProcess { .. } | Phase::NextFace | Phase::Done)
         {
             shown = nq;

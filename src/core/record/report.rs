@@ -267,6 +267,7 @@ fn word(stage: Stage) -> &'static str {
         Stage::Convert => "convert",
         Stage::Finish => "finish",
         Stage::Check => "check",
+        Stage::Draw => "draw",
         Stage::Write => "write",
     }
 }

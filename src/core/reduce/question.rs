@@ -368,7 +368,7 @@ fn ended(run: &Run, budget: Budget, cancel: &Cancel) -> Result<(End, Cost), Faul
         let (triangles, extent) = measured(&converter.mesh);
         (cost.triangles, cost.extent) = (Some(triangles), extent);
         run.make_edits(converter, 0)?;
-        walk_editing(converter, None, watch, None, &mut |c| {
+        walk_editing(converter, None, watch, None, &mut |c, _| {
             cost.steps = c.counts.steps;
             cancel.check()?;
             is_over = cost.steps > budget.steps;

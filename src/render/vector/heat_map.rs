@@ -4,16 +4,18 @@ use std::fmt::Write;
 
 use glam::DVec2;
 
-use super::svg::page::{Page, Path, Short, width};
+use super::svg::page::{Page, Path, width};
 use super::svg::{COLUMN, PAGE, Sheet};
 use super::weights::{LABEL, NOTE};
 use crate::core::kernel::number::{counted, fixed, grouped};
 use crate::core::record::report::figures::{Better, Figure};
 use crate::core::record::sweep::{Axis, Cell, Sweep};
 use crate::render::colour_map::ColourMap;
-use crate::render::look::Look;
-use crate::render::palette::{HATCH, LETTER, NOTE as NOTE_INK, Rgba};
+use crate::render::look::{Ink, Look};
+use crate::render::palette::{HATCH, Rgba, letter, note};
 
+/// The ink of axes and marks.
+const INK: Ink = Ink::Colour;
 /// The room above the cells, for two lines of text.
 const ABOVE: f64 = 22.0;
 /// The room below the cells, for numbers and name of the axis.
@@ -247,7 +249,7 @@ impl<'a> HeatMap<'a> {
             }
             page.upright_text(DVec2::new(1.1 * LABEL, middle.y), LABEL, &heading(axis));
         }
-        page.path(&ticks, &format!("fill=\"none\" stroke=\"{LETTER}\" stroke-width=\"0.5\""));
+        page.path(&ticks, &format!("fill=\"none\" stroke=\"{}\" stroke-width=\"0.5\"", letter(INK)));
     }
 
     fn scale_of_colours(&self, page: &mut Page) {
@@ -338,7 +340,7 @@ fn thinned(room: f64, cell: f64) -> usize {
 
 /// The outline of the best cells, seen on dark and on light colours.
 fn best_mark(page: &mut Page, [low, high]: [DVec2; 2]) {
-    for (inset, ink, width) in [(1.3, "#FFFFFF", 0.7), (0.5, LETTER, 1.1)] {
+    for (inset, ink, width) in [(1.3, "#FFFFFF", 0.7), (0.5, letter(INK), 1.1)] {
         let inset = DVec2::splat(inset).min(0.3 * (high - low));
         let style = format!("fill=\"none\" stroke=\"{ink}\" stroke-width=\"{width}\"");
         page.bar([low + inset, high - inset], &style);
@@ -350,7 +352,7 @@ fn own_mark(page: &mut Page, corner: DVec2, size: f64) {
     let side = 0.35 * size;
     let mut path = Path::default();
     path.walk([corner, corner + DVec2::new(side, 0.0), corner + DVec2::new(0.0, side)].into_iter(), true);
-    page.path(&path, &format!("fill=\"#FFFFFF\" stroke=\"{NOTE_INK}\" stroke-width=\"{}\"", Short(0.4)));
+    page.path(&path, &format!("fill=\"#FFFFFF\" stroke=\"{}\" stroke-width=\"0.4\"", note(INK)));
 }
 
 #[cfg(test)]

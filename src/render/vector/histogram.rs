@@ -8,7 +8,8 @@ use super::weights::Weights;
 use crate::core::kernel::number::{fixed, grouped};
 use crate::core::record::Statistics;
 use crate::core::record::statistics::{ANGLE_CLASSES, LENGTH_CLASSES};
-use crate::render::palette::{LETTER, bars};
+use crate::render::look::Ink;
+use crate::render::palette::{bars, letter};
 
 /// Margins around the axes on paper in points, for the numbers of the vertical and of the horizontal axis.
 const LEFT: f64 = 27.0;
@@ -95,7 +96,7 @@ impl Histogram {
         };
         page.text(DVec2::new(plot.high.x, note), note, "end", self.note_within(plot.high.x, note));
         self.bars(&mut page, &plot, sheet);
-        self.axes(&mut page, &plot, step, top);
+        self.axes(&mut page, &plot, sheet.look.ink, step, top);
         page.finish()
     }
 
@@ -164,7 +165,7 @@ impl Histogram {
         }
     }
 
-    fn axes(&self, page: &mut Page, plot: &Plot, step: u64, top: u64) {
+    fn axes(&self, page: &mut Page, plot: &Plot, ink: Ink, step: u64, top: u64) {
         let (note, label, Weights { line, text }) = (page.weights().note(), page.weights().label(), page.weights());
         let mut path = Path::default();
         let (corner, end) = (plot.low, DVec2::new(plot.high.x, plot.low.y));
@@ -190,7 +191,8 @@ impl Histogram {
                 numbers.push((at + DVec2::new(0.0, 3.0 * text + 0.8 * note), "middle", number));
             }
         }
-        page.path(&path, &format!("fill=\"none\" stroke=\"{LETTER}\" stroke-width=\"{}\"", Short(0.5 * line)));
+        let (ink, width) = (letter(ink), Short(0.5 * line));
+        page.path(&path, &format!("fill=\"none\" stroke=\"{ink}\" stroke-width=\"{width}\""));
         for (at, anchor, number) in numbers {
             page.text(at, note, anchor, &number);
         }

@@ -1,7 +1,9 @@
 //! PNG: an SVG of ours rendered to pixels, with the same bytes on every machine.
 
+use std::sync::{Arc, LazyLock};
+
 use resvg::tiny_skia::{Pixmap, Transform};
-use resvg::usvg::{Options, Tree};
+use resvg::usvg::{Options, Tree, fontdb};
 
 use super::svg::page::{FAMILY, FONT};
 use crate::core::fault::Fault;
@@ -10,6 +12,13 @@ use crate::core::record::figure::KEYWORD;
 /// The largest number of pixels on one side, and in total.
 const MOST: u32 = 20_000;
 const MOST_PIXELS: u64 = 200_000_000;
+
+/// The font of figures, read once.
+static FONTS: LazyLock<Arc<fontdb::Database>> = LazyLock::new(|| {
+    let mut fonts = fontdb::Database::new();
+    fonts.load_font_data(FONT.to_vec());
+    Arc::new(fonts)
+});
 
 /// The texts embedded in a PNG.
 #[derive(Clone, Copy, Debug, Default)]
@@ -20,30 +29,69 @@ pub struct Carried<'a> {
     pub run: Option<&'a str>,
 }
 
+/// Pixels in rows from the top.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Raster {
+    /// Width and height.
+    pub size: [u32; 2],
+    /// Red, green, blue and opacity of each pixel.
+    pub pixels: Vec<[u8; 4]>,
+}
+
+impl Raster {
+    /// Whether every pixel is opaque.
+    pub fn is_opaque(&self) -> bool {
+        self.pixels.iter().all(|pixel| pixel[3] == u8::MAX)
+    }
+}
+
+/// The size in pixels of an SVG at this many dots per inch.
+///
+/// # Errors
+/// A size that is not possible.
+pub fn size(svg: &str, dpi: f64) -> Result<[u32; 2], Fault> {
+    size_of(&tree(svg)?, dpi)
+}
+
+fn size_of(tree: &Tree, dpi: f64) -> Result<[u32; 2], Fault> {
+    let pixels = |length: f32| ((f64::from(length) * dpi / 72.0).round() as u32).max(1);
+    let [width, height] = [pixels(tree.size().width()), pixels(tree.size().height())];
+    if width > MOST || height > MOST || u64::from(width) * u64::from(height) > MOST_PIXELS {
+        let fault = refuse(format!("{width} x {height} pixels are too many"));
+        return Err(fault.remedy("Choose a smaller size or fewer dots per inch"));
+    }
+    Ok([width, height])
+}
+
+/// Renders an SVG at this many dots per inch.
+///
+/// # Errors
+/// As [`size`].
+pub fn raster(svg: &str, dpi: f64) -> Result<Raster, Fault> {
+    let tree = tree(svg)?;
+    let size = size_of(&tree, dpi)?;
+    Ok(Raster { size, pixels: pixels(&rendered(&tree, size)?) })
+}
+
+/// Red, green, blue and opacity of each pixel.
+fn pixels(pixmap: &Pixmap) -> Vec<[u8; 4]> {
+    let one = |pixel: &resvg::tiny_skia::PremultipliedColorU8| {
+        let colour = pixel.demultiply();
+        [colour.red(), colour.green(), colour.blue(), colour.alpha()]
+    };
+    pixmap.pixels().iter().map(one).collect()
+}
+
 /// Renders an SVG at this many dots per inch, transparent where it has no background. It uses no system fonts.
 ///
 /// # Errors
 /// A size that is not possible.
 pub fn write(svg: &str, dpi: f64, carried: Carried<'_>) -> Result<Vec<u8>, Fault> {
-    let tree = tree(svg)?;
-    let pixels = |length: f32| ((f64::from(length) * dpi / 72.0).round() as u32).max(1);
-    let (width, height) = (pixels(tree.size().width()), pixels(tree.size().height()));
-    if width > MOST || height > MOST || u64::from(width) * u64::from(height) > MOST_PIXELS {
-        let fault = refuse(format!("{width} x {height} pixels are too many"));
-        return Err(fault.remedy("Choose a smaller size or fewer dots per inch"));
-    }
-    let pixmap = rendered(&tree, [width, height])?;
-    let opaque = pixmap.pixels().iter().all(|p| p.alpha() == u8::MAX);
-    let mut bytes = Vec::with_capacity(pixmap.pixels().len() * if opaque { 3 } else { 4 });
-    for pixel in pixmap.pixels() {
-        let colour = pixel.demultiply();
-        bytes.extend([colour.red(), colour.green(), colour.blue()]);
-        if !opaque {
-            bytes.push(colour.alpha());
-        }
-    }
+    let raster = raster(svg, dpi)?;
+    let opaque = raster.is_opaque();
+    let bytes: Vec<u8> = raster.pixels.iter().flat_map(|pixel| &pixel[..if opaque { 3 } else { 4 }]).copied().collect();
     let colour = if opaque { png::ColorType::Rgb } else { png::ColorType::Rgba };
-    encode(&bytes, [width, height], colour, dpi, carried).map_err(refuse)
+    encode(&bytes, raster.size, colour, dpi, carried).map_err(refuse)
 }
 
 /// Renders an SVG in at most so many pixels. Returns its size, and red, green, blue and opacity of each pixel.
@@ -55,11 +103,7 @@ pub fn fitted(svg: &str, [width, height]: [f32; 2]) -> Result<([u32; 2], Vec<u8>
     let scale = (width / tree.size().width()).min(height / tree.size().height());
     let size = [tree.size().width(), tree.size().height()].map(|length| ((length * scale).round() as u32).max(1));
     let pixmap = rendered(&tree, size)?;
-    let pixels = pixmap.pixels().iter().flat_map(|pixel| {
-        let colour = pixel.demultiply();
-        [colour.red(), colour.green(), colour.blue(), colour.alpha()]
-    });
-    Ok((size, pixels.collect()))
+    Ok((size, pixels(&pixmap).into_flattened()))
 }
 
 fn refuse(error: impl std::fmt::Display) -> Fault {
@@ -67,8 +111,8 @@ fn refuse(error: impl std::fmt::Display) -> Fault {
 }
 
 fn tree(svg: &str) -> Result<Tree, Fault> {
-    let mut options = Options { font_family: FAMILY.to_owned(), dpi: 72.0, ..Options::default() };
-    options.fontdb_mut().load_font_data(FONT.to_vec());
+    let options =
+        Options { font_family: FAMILY.to_owned(), dpi: 72.0, fontdb: Arc::clone(&FONTS), ..Options::default() };
     Tree::from_str(svg, &options).map_err(refuse)
 }
 

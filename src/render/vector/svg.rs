@@ -1,10 +1,13 @@
 //! SVG: vector paths, widths in points, text in an embedded font, the same bytes for the same picture.
 
+mod caption;
 mod frame;
 mod marks;
 pub(super) mod page;
 
 use glam::DVec2;
+
+pub use self::caption::Caption;
 
 use self::frame::SvgFrame;
 use self::marks::Marks;
@@ -50,27 +53,38 @@ pub struct Sheet<'a> {
     pub columns: Option<usize>,
     /// The weights of its medium.
     pub weights: Weights,
+    /// The box that is fitted to the page; `None`: that of the picture.
+    pub extent: Option<[DVec2; 2]>,
+    /// The caption of a single picture.
+    pub caption: Option<Caption<'a>>,
 }
 
 impl<'a> Sheet<'a> {
     /// A sheet as wide as a column.
     pub fn column(title: &'a str, description: &'a str, look: Look) -> Sheet<'a> {
+        let (run, height, columns, extent, caption) = (None, None, None, None, None);
         let weights = Weights::PAPER;
-        Sheet { title, description, run: None, width: COLUMN, height: None, look, columns: None, weights }
+        Sheet { title, description, run, width: COLUMN, height, look, columns, weights, extent, caption }
     }
 }
 
 /// Writes one picture as an SVG file.
 pub fn write(picture: &Picture, sheet: &Sheet<'_>) -> String {
     let (look, weights) = (&sheet.look, &sheet.weights);
-    // The scale bar has its own row below the picture.
-    let below = if look.layers.has(Layer::Scale) { 1.7 * weights.label() } else { 0.0 };
+    // The scale bar has its own row below the picture, and the caption has its rows below that.
+    let bar = if look.layers.has(Layer::Scale) { 1.7 * weights.label() } else { 0.0 };
+    let below = bar + sheet.caption.map_or(0.0, |caption| caption.height(sheet.width));
     let part = look.part.map(|part| part_bounds(part, sheet.width, sheet.height));
-    let frame = SvgFrame::fit(part.or_else(|| picture.bounds()), sheet.width, sheet.height.map(|h| h - below), sheet);
-    let mut page = Page::new(sheet, frame.size.y + below, uses_text(std::slice::from_ref(picture), look, false));
+    let bounds = part.or(sheet.extent).or_else(|| picture.bounds());
+    let frame = SvgFrame::fit(bounds, sheet.width, sheet.height.map(|h| h - below), sheet);
+    let has_text = uses_text(std::slice::from_ref(picture), look, sheet.caption.is_some());
+    let mut page = Page::new(sheet, frame.size.y + below, has_text);
     draw(&mut page, picture, &frame, look, 0);
-    if below > 0.0 {
+    if bar > 0.0 {
         scale_bar(&mut page, &frame, DVec2::new(frame.size.x - 1.0, frame.size.y + weights.label()), look);
+    }
+    if let Some(caption) = sheet.caption {
+        caption.write(&mut page, sheet.width, frame.size.y + bar);
     }
     page.finish()
 }

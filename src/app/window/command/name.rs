@@ -83,6 +83,7 @@ impl Command {
             Command::SetFigure(_) => "Change the figure".into(),
             Command::ChooseFolder => "Choose the folder of figures…".into(),
             Command::SaveFigure(formats) => format!("Save the figure as {}", formats.name()),
+            Command::Film(command) => command.name().into(),
             Command::Reopen => "Reload".into(),
             Command::Notes => "Notes on this case".into(),
             Command::OpenKept => "Recover the unsaved run".into(),

@@ -1,5 +1,6 @@
 //! The panel for figures: what they show, their look and their size.
 
+mod film;
 mod preview;
 
 use std::path::Path;
@@ -23,14 +24,16 @@ use crate::render::palette::Palette;
 /// A window of at least this width has room for the preview beside the form.
 const ROOMY: f32 = 760.0;
 
-/// Shows the panel over the view, if it is open.
+/// Shows the panel over the view, if it is open. A film belongs to the window, and what is drawn is the run that the
+/// panels show.
 pub fn show(
     context: &Context,
-    state: &State,
+    window: &State,
     local: &mut PreviewState,
     commands: &mut Vec<Command>,
     palette: &Palette,
 ) {
+    let state = window.active();
     if !state.view().figure_panel {
         return;
     }
@@ -56,7 +59,7 @@ pub fn show(
                 ui.with_layout(columns, |ui| {
                     local.show(ui, state, palette);
                     ui.add_space(10.0);
-                    ui.vertical(|ui| form(ui, state, commands, palette));
+                    ui.vertical(|ui| form(ui, window, commands, palette));
                 });
             });
         });
@@ -71,16 +74,18 @@ fn field(ui: &mut Ui, text: &mut String, name: &str, hint: &str) {
     response.widget_info(|| WidgetInfo::labeled(egui::Role::TextInput, true, name));
 }
 
-fn radios<T: PartialEq>(ui: &mut Ui, value: &mut T, both: [(T, &str); 2]) {
+fn radios<T: PartialEq, const N: usize>(ui: &mut Ui, value: &mut T, all: [(T, &str); N]) {
     ui.horizontal(|ui| {
-        for (one, text) in both {
+        for (one, text) in all {
             ui.radio_value(value, one, text);
         }
     });
 }
 
-fn form(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &Palette) {
+fn form(ui: &mut Ui, window: &State, commands: &mut Vec<Command>, palette: &Palette) {
+    let state = window.active();
     let mut figure = state.workspace().figure.clone();
+    let is_film = figure.content == Content::Film;
     Grid::new("figure").num_columns(2).spacing(Vec2::new(12.0, 6.0)).show(ui, |ui| {
         let mut row = |name: &str, widgets: &mut dyn FnMut(&mut Ui)| {
             ui.label(RichText::new(name).color(ink(palette.weak)));
@@ -94,23 +99,33 @@ fn form(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &Palet
         if figure.content == Content::Stops {
             row("NQ", &mut |ui| field(ui, &mut figure.stops, "NQ of the strip", "50,100,150,end"));
         }
+        if is_film {
+            film::rows(&mut figure.film, &mut row);
+        }
         let usual = if figure.is_strip() { "174mm" } else { "84mm" };
-        let hint = format!("{usual}, or 1920x1080");
+        let hint = if is_film { "800, or 1280x720".to_owned() } else { format!("{usual}, or 1920x1080") };
         row("size", &mut |ui| field(ui, &mut figure.size, "Size of the figure", &hint));
-        row("resolution (dpi)", &mut |ui| {
-            let dots = ui.add(DragValue::new(&mut figure.dpi).range(10.0..=2400.0).speed(5.0).max_decimals(0));
-            dots.widget_info(|| WidgetInfo::labeled(egui::Role::SpinButton, true, "Resolution (dpi)"));
-        });
+        if !is_film {
+            row("resolution (dpi)", &mut |ui| {
+                let dots = ui.add(DragValue::new(&mut figure.dpi).range(10.0..=2400.0).speed(5.0).max_decimals(0));
+                dots.widget_info(|| WidgetInfo::labeled(egui::Role::SpinButton, true, "Resolution (dpi)"));
+            });
+        }
         row("line weight", &mut |ui| {
             let [least, most] = LINE_SCALES;
             let factor = ui.add(DragValue::new(&mut figure.line_scale).range(least..=most).speed(0.01).max_decimals(2));
             factor.widget_info(|| WidgetInfo::labeled(egui::Role::SpinButton, true, "Factor on the widths of lines"));
         });
         row("text size", &mut |ui| field(ui, &mut figure.font_size, "Size of the text", "6 pt, or 12 pixels"));
-        row("ink", &mut |ui| radios(ui, &mut figure.ink, [(Ink::Colour, "colour"), (Ink::Grey, "grey")]));
-        row("ground", &mut |ui| radios(ui, &mut figure.transparent, [(false, "white"), (true, "transparent")]));
+        row("ink", &mut |ui| radios(ui, &mut figure.ink, Ink::ALL.map(|ink| (ink, ink.name()))));
+        if !is_film {
+            let grounds = [(false, "of the ink"), (true, "transparent")];
+            row("ground", &mut |ui| radios(ui, &mut figure.transparent, grounds));
+        }
         let parts = [(false, "the whole mesh"), (true, "what is in view")];
-        row("part", &mut |ui| radios(ui, &mut figure.in_view, parts));
+        if !(is_film && figure.film.follows) {
+            row("part", &mut |ui| radios(ui, &mut figure.in_view, parts));
+        }
         row("folder", &mut |ui| {
             ui.horizontal(|ui| {
                 field(ui, &mut figure.folder, "Folder of the figure", "the working folder");
@@ -143,6 +158,9 @@ fn form(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &Palet
         commands.push(Command::SetFigure(Box::new(figure)));
     }
     ui.add_space(8.0);
+    if is_film {
+        return film::making(ui, window, commands, palette);
+    }
     let names = figures::names(state, Formats::Both);
     let folder = names[0].parent().filter(|folder| !folder.as_os_str().is_empty()).map(Path::to_path_buf);
     let folder = folder.or_else(|| std::env::current_dir().ok()).unwrap_or_default();

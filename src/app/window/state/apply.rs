@@ -17,6 +17,7 @@ use crate::app::command_line::Overrides;
 use crate::app::window::command::Command;
 use crate::app::window::figures::Formats;
 use crate::app::window::files::Dialog;
+use crate::app::window::film::FilmCommand;
 use crate::app::window::layout::Pane;
 use crate::app::window::lists::{ListKind, RecordedSteps};
 use crate::app::window::measure::Measuring;
@@ -180,6 +181,12 @@ impl State {
             Command::SetFigure(form) => self.workspace.figure = *form,
             Command::Export => self.save_figure(Formats::Both),
             Command::SaveFigure(formats) => self.save_figure(formats),
+            Command::Film(FilmCommand::Save(format)) => self.save_film(format),
+            Command::Film(FilmCommand::Stop) => {
+                if let Some(film) = &mut self.film {
+                    film.stop();
+                }
+            }
             Command::Reopen => {
                 if let Some(source) = self.run.source.clone() {
                     self.open(source, self.run.overrides.clone());

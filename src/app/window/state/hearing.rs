@@ -10,6 +10,7 @@ use std::time::{Duration, Instant};
 
 use super::{Look, State};
 use crate::app::figure::another_state;
+use crate::app::window::film::FilmWork;
 use crate::app::window::reducing::Reducing;
 use crate::app::window::session::{Moment, SessionNews, Source};
 use crate::app::window::sweep::SweepWork;
@@ -27,6 +28,11 @@ impl State {
         self.hear_second();
         if let Some(fault) = self.reducing.as_mut().and_then(Reducing::hear) {
             self.complain(&fault);
+        }
+        match self.film.as_mut().and_then(FilmWork::hear) {
+            Some(Ok(notice)) => self.notice(notice),
+            Some(Err(fault)) => self.complain(&fault),
+            None => {}
         }
         if let Some(fault) = self.sweep.as_mut().and_then(SweepWork::hear) {
             self.complain(&fault);

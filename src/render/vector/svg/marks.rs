@@ -5,8 +5,8 @@ use glam::DVec2;
 use super::Weights;
 use super::frame::SvgFrame;
 use super::page::{Page, Path, Short, width};
-use crate::render::look::{Layer, Look};
-use crate::render::palette::{LETTER, NOTE};
+use crate::render::look::{Ink, Layer, Look};
+use crate::render::palette::{letter, note as note_ink};
 use crate::render::picture::Mark;
 
 /// Radius of nodes and wedges, on paper in points as all that follows.
@@ -33,6 +33,7 @@ pub struct Marks<'a> {
     /// What no plate may cover, and boxes already occupied.
     taken: Vec<[DVec2; 2]>,
     has: [bool; 2],
+    ink: Ink,
 }
 
 impl<'a> Marks<'a> {
@@ -40,7 +41,7 @@ impl<'a> Marks<'a> {
     pub fn new(page: &'a mut Page, frame: &'a SvgFrame, look: &Look) -> Marks<'a> {
         let has = [Layer::Nodes, Layer::Ellipses].map(|layer| look.layers.has(layer));
         let weights = page.weights();
-        Marks { page, frame, weights, taken: Vec::new(), has }
+        Marks { page, frame, weights, taken: Vec::new(), has, ink: look.ink }
     }
 
     /// Draws marks: one path for each kind, then the text.
@@ -79,7 +80,8 @@ impl<'a> Marks<'a> {
                 path.walk([p, p].into_iter(), false);
             }
         }
-        let stroke = format!("stroke=\"{LETTER}\" stroke-width=\"{}\" stroke-linecap=\"round\"", self.line(2.0 * NODE));
+        let (ink, width) = (letter(self.ink), self.line(2.0 * NODE));
+        let stroke = format!("stroke=\"{ink}\" stroke-width=\"{width}\" stroke-linecap=\"round\"");
         self.page.path(&path, &format!("fill=\"none\" {stroke}"));
     }
 
@@ -96,7 +98,8 @@ impl<'a> Marks<'a> {
                 path.walk((0..32).map(point), true);
             }
         }
-        self.page.path(&path, &format!("fill=\"none\" stroke=\"{NOTE}\" stroke-width=\"{}\"", self.line(0.35)));
+        let (ink, width) = (note_ink(self.ink), self.line(0.35));
+        self.page.path(&path, &format!("fill=\"none\" stroke=\"{ink}\" stroke-width=\"{width}\""));
     }
 
     fn wedges(&mut self, marks: &[Mark]) {
@@ -110,7 +113,7 @@ impl<'a> Marks<'a> {
                 path.walk(std::iter::once(p).chain(arc(p, legs, radius)), true);
             }
         }
-        self.page.path(&path, &format!("fill=\"{LETTER}\""));
+        self.page.path(&path, &format!("fill=\"{}\"", letter(self.ink)));
     }
 
     /// Places a letter beside its point: opposite the point it avoids, or rotated from there until there is room.
@@ -155,7 +158,8 @@ impl<'a> Marks<'a> {
         if self.put(p + d * away, half, text, note) || always {
             let mut path = Path::default();
             path.walk(points.into_iter(), false);
-            self.page.path(&path, &format!("fill=\"none\" stroke=\"{NOTE}\" stroke-width=\"{}\"", self.line(0.4)));
+            let (ink, width) = (note_ink(self.ink), self.line(0.4));
+            self.page.path(&path, &format!("fill=\"none\" stroke=\"{ink}\" stroke-width=\"{width}\""));
         }
     }
 

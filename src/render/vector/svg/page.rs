@@ -9,7 +9,8 @@ use glam::DVec2;
 use super::Sheet;
 use super::Weights;
 use crate::core::record::figure;
-use crate::render::palette::LETTER;
+use crate::render::look::Ink;
+use crate::render::palette::{ground, letter};
 
 /// The font of figures: the characters of IBM Plex Sans that they need.
 pub(in crate::render::vector) const FONT: &[u8] =
@@ -22,6 +23,7 @@ pub struct Page {
     svg: String,
     weights: Weights,
     hatched: bool,
+    ink: Ink,
 }
 
 impl Page {
@@ -46,9 +48,10 @@ impl Page {
             );
         }
         if !sheet.look.transparent {
-            let _ = writeln!(svg, "<rect width=\"{w}\" height=\"{h}\" fill=\"#FFFFFF\"/>");
+            let fill = ground(sheet.look.ink);
+            let _ = writeln!(svg, "<rect width=\"{w}\" height=\"{h}\" fill=\"{fill}\"/>");
         }
-        Page { svg, weights: sheet.weights, hatched: false }
+        Page { svg, weights: sheet.weights, hatched: false, ink: sheet.look.ink }
     }
 
     /// The weights of its medium.
@@ -96,7 +99,7 @@ impl Page {
 
     /// Writes a text anchored with its start, middle or end at a point of its baseline.
     pub fn text(&mut self, at: DVec2, size: f64, anchor: &str, text: &str) {
-        self.text_in(at, size, anchor, LETTER, text);
+        self.text_in(at, size, anchor, letter(self.ink), text);
     }
 
     /// As [`Page::text`], in this ink.
@@ -107,7 +110,7 @@ impl Page {
     /// Writes a vertical text with its middle at a point of its baseline.
     pub fn upright_text(&mut self, at: DVec2, size: f64, text: &str) {
         let place = format!("transform=\"translate({} {}) rotate(-90)\"", Short(at.x), Short(at.y));
-        self.placed_text(&place, size, "middle", LETTER, text);
+        self.placed_text(&place, size, "middle", letter(self.ink), text);
     }
 
     fn placed_text(&mut self, place: &str, size: f64, anchor: &str, ink: &str, text: &str) {
@@ -120,9 +123,9 @@ impl Page {
         );
     }
 
-    /// Writes a white plate with rounded corners, to go under a text.
+    /// Writes a plate in the colour of the ground with rounded corners, to go under a text.
     pub fn plate(&mut self, [low, high]: [DVec2; 2]) {
-        self.bar([low, high], "fill=\"#FFFFFF\" fill-opacity=\"0.9\" rx=\"0.8\"");
+        self.bar([low, high], &format!("fill=\"{}\" fill-opacity=\"0.9\" rx=\"0.8\"", ground(self.ink)));
     }
 
     /// A rectangle.

@@ -6,8 +6,10 @@ use super::{Overlay, State};
 use crate::app::window::autosave::Autosave;
 use crate::app::window::figures::{self, Formats};
 use crate::app::window::files;
+use crate::app::window::film::FilmWork;
 use crate::app::window::mesh_out;
 use crate::core::record::run_file;
+use crate::render::film::FilmFormat;
 
 impl State {
     /// Autosaves the run in a folder, and offers what was left there.
@@ -39,6 +41,14 @@ impl State {
     pub(super) fn save_figure(&mut self, formats: Formats) {
         match figures::begin(self, formats, self.wake.clone()) {
             Ok(writing) => self.run.figures.extend(writing),
+            Err(fault) => self.complain(&fault),
+        }
+    }
+
+    /// Starts to make the film that the panel describes, of the run that the panels show.
+    pub(super) fn save_film(&mut self, format: FilmFormat) {
+        match FilmWork::begin(self.active(), format, self.wake.clone()) {
+            Ok(film) => self.film = film.or(self.film.take()),
             Err(fault) => self.complain(&fault),
         }
     }
