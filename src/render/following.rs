@@ -8,12 +8,12 @@ use super::look::FigurePart;
 pub type Extent = [DVec2; 2];
 
 /// The height of the part drawn, in diagonals of what is followed.
-const AROUND: f64 = 8.0;
+const AROUND: f64 = 4.0;
 /// The room around what is followed, as a share of the part drawn.
 const MARGIN: f64 = 0.08;
 
-/// The part drawn in each frame of a film. `followed` is what is followed in each frame, where `None` is everything: the
-/// box `whole`. `shape` is the width of a frame divided by its height, and the camera begins to move `reach` frames
+/// The part drawn in each frame of a film. `followed` is what is followed in each frame, where `None` is everything:
+/// the box `whole`. `shape` is the width of a frame divided by its height, and the camera begins to move `reach` frames
 /// before what it follows does, and arrives as many after it.
 ///
 /// Centres are means over the frames around. Heights are what these centres need; of those around, the largest is taken

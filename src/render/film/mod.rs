@@ -51,8 +51,8 @@ pub struct Playing {
 }
 
 impl Playing {
-    /// The time that frame `k` of `count` stays, in hundredths of a second. They are rounded so that the film as a whole
-    /// keeps its rate.
+    /// The time that frame `k` of `count` stays, in hundredths of a second. They are rounded so that the film as a
+    /// whole keeps its rate.
     fn hundredths(&self, k: usize, count: usize) -> u16 {
         let time = |k: usize| (k as f64 * 100.0 / self.rate).round();
         let own = time(k + 1) - time(k);
@@ -128,7 +128,8 @@ struct Part {
 }
 
 impl Part {
-    /// The smallest rectangle around the pixels in which a frame differs from the one before; one pixel where none does.
+    /// The smallest rectangle around the pixels in which a frame differs from the one before; one pixel where none
+    /// does.
     fn changed<T: PartialEq>(before: &[T], now: &[T], [width, height]: [u32; 2]) -> Part {
         let row = |pixels: &[T], y: u32| -> std::ops::Range<usize> {
             debug_assert_eq!(pixels.len(), width as usize * height as usize);

@@ -22,7 +22,8 @@ pub struct Caption<'a> {
 }
 
 impl<'a> Caption<'a> {
-    /// Its text in the rows that it takes on a page of some width: whole words, where a word is not wider than the page.
+    /// Its text in the rows that it takes on a page of some width: whole words, where a word is not wider than the
+    /// page.
     pub fn wrapped(&self, page: f64) -> Vec<&'a str> {
         let room = SHARE * page;
         let fits = |text: &str| width(text, self.size) <= room;
