@@ -456,7 +456,7 @@ mod tests {
             "quadfront compare example1 --with-paper --json",
             "quadfront compare a.toml b.toml --set size_scale=0.5",
             "quadfront reduce example1 --while exit_1 -o small.toml --tries 50",
-            "quadfront sweep example1 --over c=1.5:3:.25 --over theta_rect=110:150:5 --show irregular -o a.svg -o a.csv",
+            "quadfront sweep example1 --over c=1.5:3:.25 --over theta_rect=110:150:5 --show irregular -o a.csv",
             "quadfront sweep example1 --over selection=table1,level --list",
             "quadfront sweep example1 --list=cells --over c=1:2:.5",
             "quadfront sweep example1 --collect cells -o a.json --show seconds",

@@ -284,7 +284,19 @@ impl FigureOptions {
             ($($option:ident),*) => { FigureOptions { $($option: self.$option.clone().or(theirs.$option),)* } };
         }
         Ok(completed!(
-            size, dpi, line_scale, font_size, ink, transparent, layers, plot, part, view, hidden, parametric, captions,
+            size,
+            dpi,
+            line_scale,
+            font_size,
+            ink,
+            transparent,
+            layers,
+            plot,
+            part,
+            view,
+            hidden,
+            parametric,
+            captions,
             columns
         ))
     }
