@@ -81,6 +81,8 @@ pub enum Command {
     Fit,
     /// Show the base segment in the middle, from near.
     ShowDecision,
+    /// Let the camera go where the decision is, or stay.
+    ToggleFollow,
     /// Look at the mesh in space from there.
     LookFrom(Bearing),
     /// A view looks elsewhere.

@@ -273,6 +273,7 @@ impl Command {
                 | Command::Arrange(_)
                 | Command::ResetLayout
                 | Command::ToggleTheme
+                | Command::ToggleFollow
                 | Command::Measure
                 | Command::ShowTimes
                 | Command::Speed(_)

@@ -2,6 +2,7 @@
 
 mod cameras;
 mod faces;
+mod following;
 mod given;
 pub mod pair;
 mod space;
@@ -68,6 +69,8 @@ pub struct Views {
     cover: space::Covering,
     /// The last request to look somewhere that the views have followed.
     looked: u64,
+    /// The camera that goes where the decision is.
+    following: following::Following,
 }
 
 /// The camera of a view and its rectangle on the screen.
@@ -161,9 +164,19 @@ impl Views {
         let response = self.canvas(ui, rect, "plane", state);
         let size = DVec2::new(f64::from(rect.width()), f64::from(rect.height()));
         let (mut camera, mut is_fitted) = aim(state, moment, size, look);
+        // Where it is beside a view in space, that one follows the decisions.
+        if index == 0
+            && let Some(guided) =
+                self.following.guide(ui, state, moment, camera, size, |mesh, n| mesh.uv(n).extend(0.0))
+        {
+            (camera, is_fitted) = (guided, false);
+        }
         let aimed = camera;
         steer(ui, &response, &mut camera, rect);
-        is_fitted &= camera == aimed;
+        if camera != aimed {
+            is_fitted = false;
+            self.following.leave();
+        }
         moved(state.view().plane, ViewKind::Plane, ViewCamera { camera: Some(camera), is_fitted, size }, commands);
         let frame = ViewFrame { camera, rect };
         let pointer = response.hover_pos().filter(|_| !response.dragged());

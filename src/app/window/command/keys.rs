@@ -36,6 +36,7 @@ impl Purpose {
             Command::Layer(_) => Purpose::Layers,
             Command::Fit
             | Command::ShowDecision
+            | Command::ToggleFollow
             | Command::TogglePlane
             | Command::ToggleSplit
             | Command::LookFrom(_)
@@ -99,6 +100,7 @@ pub fn keys() -> Vec<(Modifiers, Key, Command)> {
         (CTRL_SHIFT, Key::G, Command::ToLargestLoss),
         (CTRL_SHIFT, Key::B, Command::NoteHere),
         (SHIFT, Key::V, Command::ToggleSplit),
+        (SHIFT, Key::D, Command::ToggleFollow),
         (CTRL, Key::ArrowRight, Command::Go(Goal::Steps(1))),
         (CTRL, Key::ArrowLeft, Command::Go(Goal::Steps(-1))),
         (SHIFT, Key::ArrowRight, Command::Go(Goal::Quads(10))),

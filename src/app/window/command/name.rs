@@ -37,6 +37,7 @@ impl Command {
             Command::ShowTimes => "Show how long states and frames take".into(),
             Command::Fit => "Fit the mesh to the view".into(),
             Command::ShowDecision => "Zoom to the decision".into(),
+            Command::ToggleFollow => "Follow the decision".into(),
             Command::LookFrom(Bearing::Iso) => "Look from front, right and above".into(),
             Command::LookFrom(Bearing::X) => "Look from +x".into(),
             Command::LookFrom(Bearing::Y) => "Look from +y".into(),

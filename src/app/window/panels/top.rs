@@ -106,9 +106,9 @@ fn menus(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
         items(ui, SweepCommand::ALL.map(Command::Sweep), commands);
     });
     ui.menu_button("View", |ui| {
-        let view =
-            [Command::Fit, Command::ShowDecision, Command::FindWorst, Command::ToggleTheme, Command::ResetLayout];
-        items(ui, view, commands);
+        let looks = [Command::Fit, Command::ShowDecision, Command::ToggleFollow, Command::FindWorst];
+        items(ui, looks, commands);
+        items(ui, [Command::ToggleTheme, Command::ResetLayout], commands);
         ui.separator();
         ui.menu_button("Surfaces", |ui| {
             items(ui, SurfaceView::ALL.map(Command::SurfaceView), commands);

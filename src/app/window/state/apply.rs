@@ -92,6 +92,11 @@ impl State {
             Command::ShowTimes => self.view.times = !self.view.times,
             Command::Fit => self.view.look.ask(Look::Fit),
             Command::ShowDecision => self.view.look.ask(Look::Decision),
+            Command::ToggleFollow => {
+                self.workspace.follows = !self.workspace.follows;
+                let told = if self.workspace.follows { "follows the decisions" } else { "stays where it is" };
+                self.notice(format!("The camera {told}."));
+            }
             Command::LookFrom(side) => self.view.look.ask(Look::From(side)),
             Command::MoveCamera(view, camera) => self.move_camera(view, camera),
             Command::SurfaceView(view) => self.workspace.surfaces.view = view,

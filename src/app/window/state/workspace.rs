@@ -19,6 +19,8 @@ pub struct Workspace {
     pub document: Document,
     /// Quadrilaterals a second while playing.
     pub speed: f32,
+    /// Whether the camera goes where the decision is.
+    pub follows: bool,
     /// How meshes on surfaces are shown.
     pub surfaces: SurfaceStyle,
     /// How figures are made.
@@ -119,6 +121,7 @@ impl Default for Workspace {
         Workspace {
             document: Document::default(),
             speed: 8.0,
+            follows: false,
             surfaces: SurfaceStyle::default(),
             figure: FigureForm::default(),
             sweep: SweepForm::default(),

@@ -44,7 +44,13 @@ impl Views {
         let response = self.canvas(ui, rect, "space", state);
         let size = DVec2::new(f64::from(rect.width()), f64::from(rect.height()));
         let (mut camera, mut is_fitted) = aim(state, moment, size, look);
-        is_fitted &= !self.steer(ui, &response, &mut camera, rect, moment);
+        if let Some(guided) = self.following.guide(ui, state, moment, camera, size, |mesh, n| mesh.xyz(n)) {
+            (camera, is_fitted) = (guided, false);
+        }
+        if self.steer(ui, &response, &mut camera, rect, moment) {
+            is_fitted = false;
+            self.following.leave();
+        }
         moved(state.view().space, ViewKind::Space, ViewCamera { camera: Some(camera), is_fitted, size }, commands);
         let frame = ViewFrame { camera, rect };
         let pointer = response.hover_pos().filter(|_| !response.dragged());
