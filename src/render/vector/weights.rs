@@ -1,5 +1,5 @@
-//! The weights of lines and text on a medium. On paper they are those of the palette, in points. A picture with its size
-//! in pixels is seen on a screen, where a line thinner than a pixel fades and a small text cannot be read.
+//! The weights of lines and text on a medium. On paper they are those of the palette, in points. A picture with its
+//! size in pixels is seen on a screen, where a line thinner than a pixel fades and a small text cannot be read.
 
 /// The width in points of the thinnest line on paper, edges of crowded elements apart.
 const THINNEST: f64 = 0.25;
