@@ -140,7 +140,7 @@ fn oracle(asked: &Asked, before: &Converter<'_>, event: &Event) -> Answer {
             let angle = |e| {
                 let others: Vec<NodeId> = mesh.corners(e).filter(|&n| n != node).collect();
                 let [p, q] = [0, 1].map(|k| (mesh.uv(others[k]) - mesh.uv(node)).normalize());
-                p.dot(q).clamp(-1.0, 1.0).acos().to_degrees()
+                libm::acos(p.dot(q).clamp(-1.0, 1.0)).to_degrees()
             };
             let sum: f64 = mesh.elements_at(node).filter(|&e| mesh.is_triangle(e)).map(angle).sum();
             Answer::Choice(match sum {

@@ -89,7 +89,9 @@ mod tests {
 
     const KNOWN: [&str; 2] = ["go", "light"];
 
-    fn attributes(line: &str) -> Result<(String, Vec<(&'static str, String)>), String> {
+    type Told = (String, Vec<(&'static str, String)>);
+
+    fn attributes(line: &str) -> Result<Told, String> {
         let (text, found) = split(line, &KNOWN).map_err(|fault| fault.to_string())?;
         Ok((text.to_owned(), found.into_iter().map(|a| (a.key, a.value)).collect()))
     }

@@ -1,6 +1,6 @@
 //! Questions about what a run does next: which can be asked at a state, the right answer, and the judgement of any
-//! answer with its reason. The right answer is what the next step does, or what the state is; no file holds one. Reasons
-//! are those of `run/explain`, so that the inspector, a lesson and a prediction say the same.
+//! answer with its reason. The right answer is what the next step does, or what the state is; no file holds one.
+//! Reasons are those of `run/explain`, so that the inspector, a lesson and a prediction say the same.
 //!
 //! | what | where |
 //! |---|---|
