@@ -324,7 +324,7 @@ fn whatever_is_wrong_is_one_line_with_exit_2() {
         (&["convert", "uniform", "--set", "size=1"], "size_scale"),
         (&["convert", "uniform", "--report", "a", "--events", "a"], "same target"),
         (&["cases", "gaer"], "\"gear\""),
-        (&["lesson", "figure-41"], "\"figure-4\""),
+        (&["lesson", "figur-4"], "\"figure-4\""),
         (&["lesson", "odd.md"], "odd.md, line 5: There is no attribute \"goo\""),
     ];
     for (arguments, words) in lines {

@@ -3,15 +3,12 @@
 //! Needs a graphics adapter (see `window_harness`).
 #![allow(clippy::unwrap_used)]
 
-#[path = "window_harness/pictures.rs"]
-mod pictures;
 mod window_harness;
 
 use std::path::Path;
 use std::process::Command as Process;
 
 use egui_kittest::kittest::Queryable;
-use pictures::picture;
 use quadfront::app::window::{App, Command, Goal, Source};
 use window_harness::{LAPTOP, Window, apply, has_adapter, settle, start, type_over, until};
 
@@ -48,19 +45,18 @@ fn a_film_from_the_window_is_the_one_of_the_command_line() {
     type_over(&mut window, "First frame", "step=1");
     type_over(&mut window, "Last frame", "step=7");
     type_over(&mut window, "From frame to frame", "step=2");
-    type_over(&mut window, "Size of the figure", "120x110");
+    type_over(&mut window, "Size of the figure", "420x380");
     window.get_by_label("follows the decision").click();
     window.get_by_label("dark").click();
     window.get_by_label("once").click();
     window.run_steps(2);
-    picture(&mut window, "film-form");
     window.get_by_label("Save the film as animated PNG").click();
     window.run_steps(2);
     until(&mut window, "the film is saved", |window| !is_running(window));
     let film = std::fs::read(folder.path().join("film.apng")).unwrap();
-    assert!(window.query_by_label_contains("4 frames of 120 x 110 pixels").is_some());
+    assert!(window.query_by_label_contains("4 frames of 420 x 380 pixels").is_some());
     let words = ["animate", "figure-14", "-q", "--from", "step=1", "--to", "step=7", "--every", "step=2"];
-    let look = ["--size", "120x110", "--camera", "follow", "--ink", "dark", "--captions", "--loop", "once"];
+    let look = ["--size", "420x380", "--camera", "follow", "--ink", "dark", "--captions", "--loop", "once"];
     assert!(film == made(&[&words[..], &look].concat(), &folder.path().join("other.apng")));
     // A GIF of the same, under a name that is free; an APNG is not written over.
     for (button, file) in [("Save the film as GIF", "film.gif"), ("Save the film as animated PNG", "film-2.apng")] {
@@ -81,7 +77,6 @@ fn a_film_is_stopped_at_a_click_and_leaves_nothing_while_one_goes_on_working() {
     window.get_by_label("Save the film as GIF").click();
     window.run_steps(2);
     until(&mut window, "frames are drawn", |window| window.query_by_label_contains("Frame ").is_some());
-    picture(&mut window, "film-progress");
     window.state_mut().apply(Command::Go(Goal::Steps(3)));
     until(&mut window, "the step is there", |window| {
         window.state().state.run().moment.as_ref().is_some_and(|moment| moment.step == 3)

@@ -110,7 +110,7 @@ mod tests {
                 // It wanders, and leaps now and then.
                 let by = if k % 40 == 39 { 9.0 } else { 0.1 };
                 at = (at + by * (DVec2::new(next(), next()) - 0.5)).clamp(WHOLE[0], WHOLE[1] - 0.1);
-                if k < 10 || k > 290 { None } else { quad(at.x, at.y) }
+                if (10..=290).contains(&k) { quad(at.x, at.y) } else { None }
             })
             .collect();
         let (shape, reach) = (1.5, 12);

@@ -3,6 +3,7 @@
 use eframe::egui::accesskit::Live;
 use eframe::egui::{Event as Input, Key, Modifiers, PointerButton, Pos2, Role, Vec2};
 use egui_kittest::kittest::{NodeT, Queryable};
+use glam::DVec2;
 use quadfront::app::window::{Command, Direction, Goal, ViewLayer};
 use quadfront::core::convert::{Event, EventKind};
 use quadfront::core::kernel::number::grouped;
@@ -159,6 +160,43 @@ fn the_sentence_of_a_step_stands_below_the_buttons_and_leads_to_the_transcript()
     let changed = (4..=80).find(|step| other.event(*step).unwrap() != whole.event(*step).unwrap()).unwrap();
     let text = format!("Step {changed}: {}", plain(&other.transcript(changed, changed).unwrap()[0]));
     until(&mut harness, &text, |harness| harness.query_by_label(&text).is_some());
+}
+
+#[test]
+fn the_camera_follows_the_decision_until_it_is_told_to_stay() {
+    let Some(mut harness) = window() else { return };
+    let select = |harness: &mut Window| {
+        apply(harness, Command::Go(Goal::Kind(EventKind::BaseSelected, Direction::Forward)));
+        harness.run_steps(60);
+    };
+    let camera = |harness: &Window| harness.state().state.view().plane;
+    // The ends of the base in the view, in points.
+    let base = |harness: &Window| {
+        let moment = harness.state().state.run().moment.clone().unwrap();
+        let base = moment.phase.base().unwrap();
+        let view = camera(harness);
+        let at = |n| view.camera.unwrap().project(moment.mesh.uv(n).extend(0.0), view.size);
+        ([at(base.a), at(base.b)], view.size)
+    };
+    let is_seen = |harness: &Window| {
+        let ([a, b], size) = base(harness);
+        [a, b].iter().all(|p| p.cmpgt(DVec2::ZERO).all() && p.cmplt(size).all()) && a.distance(b) >= 24.0
+    };
+    select(&mut harness);
+    assert!(!is_seen(&harness), "in the whole mesh the base is a dot");
+    press(&mut harness, Modifiers::SHIFT, Key::D);
+    harness.run_steps(60);
+    assert!(is_seen(&harness), "{:?}", base(&harness));
+    for step in [400, 900, 1500, 2000] {
+        apply(&mut harness, Command::Go(Goal::Step(step)));
+        select(&mut harness);
+        assert!(is_seen(&harness), "step {step}: {:?}", base(&harness));
+    }
+    let before = camera(&harness);
+    press(&mut harness, Modifiers::SHIFT, Key::D);
+    apply(&mut harness, Command::Go(Goal::Step(30)));
+    harness.run_steps(60);
+    assert_eq!(camera(&harness), before, "it stays");
 }
 
 #[test]

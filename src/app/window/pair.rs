@@ -137,7 +137,7 @@ impl PairCommand {
 pub enum CompareNews {
     Progress(Progress),
     /// The first difference, or that the runs never differ.
-    First(Option<FirstDifference>),
+    First(Option<Box<FirstDifference>>),
     /// The reports at the ends of both, with the time that each takes by itself.
     Reports(Box<[Report; 2]>),
     /// The decisions in which they differ although their fronts are the same there.
@@ -204,7 +204,7 @@ fn compare([a, b]: [Run; 2], said: &dyn Fn(CompareNews), stop: &Cancel, asked: &
     let [mut a, mut b] = [History::of(a, &backgrounds[0], KEPT)?, History::of(b, &backgrounds[1], KEPT)?];
     let first = first_difference([&mut a, &mut b], &mut watch)?;
     let parting = first.as_ref().map(|first| first.step);
-    said(CompareNews::First(first));
+    said(CompareNews::First(first.map(Box::new)));
     let report = |run: &Run| {
         let mut watch = new_watch();
         let mut report = crate::app::compare::report(run, &mut watch)?;

@@ -74,7 +74,9 @@ impl<'w> Apng<'w> {
 
     /// Ends the film.
     pub fn finish(self) -> io::Result<()> {
-        // The writer says so itself where frames are missing.
+        if self.written != self.count {
+            return Err(io::Error::other(format!("{} of {} frames were drawn", self.written, self.count)));
+        }
         self.writer.finish().map_err(explained)
     }
 }

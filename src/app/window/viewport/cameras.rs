@@ -30,11 +30,12 @@ pub(super) fn aim(state: &State, moment: &Moment, size: DVec2, look: Option<Look
         None | Some(Look::From(_)) => {}
         Some(Look::Fit) => (camera, is_fitted) = (fitted, true),
         Some(Look::Decision) => {
-            if let Some([a, b]) = Decision::of(&moment.phase).base.or(state.picked_segment()) {
-                if let Some((place, scale)) = near(moment, [a, b], size, |mesh, n| mesh.uv(n).extend(0.0)) {
-                    camera.look_at(place.truncate(), scale);
-                    is_fitted = false;
-                }
+            let ends = Decision::of(&moment.phase).base.or(state.picked_segment());
+            if let Some((place, scale)) =
+                ends.and_then(|ends| near(moment, ends, size, |mesh, n| mesh.uv(n).extend(0.0)))
+            {
+                camera.look_at(place.truncate(), scale);
+                is_fitted = false;
             }
         }
         // A camera of space does not fit the plane.

@@ -37,6 +37,7 @@ pub fn narration(event: &Event, base: Option<[NodeId; 2]>) -> String {
              becomes smaller",
             edge(new)
         ),
+        Event::Smoothed { nodes: 0 } => "around the new quadrilateral smoothing moves no node".to_owned(),
         Event::Smoothed { nodes } => format!(
             "around the new quadrilateral {} moved to better places, so that the front can go on from there",
             are(nodes.into(), "node")
@@ -168,6 +169,7 @@ fn top(event: &Event) -> String {
         Event::TopSwapped { across, new } => {
             format!("top: the edge {} lies across the top edge, so it is swapped for {}", edge(across), edge(new))
         }
+        Event::TopSmoothed { nodes: 0 } => "top: after the swap smoothing moves no node around the left top".to_owned(),
         Event::TopSmoothed { nodes } => {
             format!("top: after the swap {} moved to better places around the left top", are(nodes.into(), "node"))
         }

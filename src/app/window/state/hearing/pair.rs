@@ -119,7 +119,8 @@ impl State {
         while let Some(comparing) = &pair.comparing {
             match comparing.hear() {
                 Ok(CompareNews::Progress(progress)) => pair.progress = Some(progress),
-                Ok(CompareNews::First(first_difference)) => {
+                Ok(CompareNews::First(found)) => {
+                    let first_difference = found.map(|found| *found);
                     pair.comparison = Some(Comparison { first_difference, reports: None, differences: None });
                 }
                 Ok(CompareNews::Reports(reports)) => {
