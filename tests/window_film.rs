@@ -54,7 +54,7 @@ fn a_film_from_the_window_is_the_one_of_the_command_line() {
     window.run_steps(2);
     until(&mut window, "the film is saved", |window| !is_running(window));
     let film = std::fs::read(folder.path().join("film.apng")).unwrap();
-    assert!(window.query_by_label_contains("4 frames of 420 x 380 pixels").is_some());
+    assert!(window.query_all_by_label_contains("4 frames of 420 x 380 pixels").next().is_some());
     let words = ["animate", "figure-14", "-q", "--from", "step=1", "--to", "step=7", "--every", "step=2"];
     let look = ["--size", "420x380", "--camera", "follow", "--ink", "dark", "--captions", "--loop", "once"];
     assert!(film == made(&[&words[..], &look].concat(), &folder.path().join("other.apng")));
