@@ -184,7 +184,7 @@ fn narrated(size_scale: &str) -> (History, Vec<String>) {
     let mut history = History::open(run, &mut Nobody).unwrap();
     history.seek(u64::MAX).unwrap();
     let mut base = None;
-    let mut told = vec!["The front is the boundary.".to_owned()];
+    let mut told = vec!["Nothing is converted yet: the front is the boundary of the mesh.".to_owned()];
     for event in history.events(1, history.step()).unwrap() {
         if let Event::BaseSelected { a, b, .. } = event {
             base = Some([a, b]);

@@ -19,7 +19,9 @@ use crate::core::convert::{Candidate, Candidates, Event as Did, EventKind, Stop}
 use crate::core::fault::Fault;
 use crate::core::kernel::number::{counted, grouped};
 use crate::core::progress::{Stage, Watch};
-use crate::core::run::explain::{about, attempt as words, capital, edge, event as did, passed, plain, why_rolled_back};
+use crate::core::run::explain::{
+    about, attempt as words, beginning, capital, edge, event as did, passed, plain, why_rolled_back,
+};
 use crate::core::run::shown::fingerprint;
 use crate::core::run::{Bookmark, Changes, History, Run, ShownState, Tried};
 use crate::render::picture::Seen;
@@ -113,7 +115,7 @@ fn section(
     let figure = Figure::of_run(run, &[frame], options, embeds)?;
     let quads = counted(state.standing(), "quadrilateral");
     let event = history.event(*step)?;
-    let did = event.map_or_else(|| "The front is the boundary".to_owned(), |event| said(&event));
+    let did = event.map_or_else(|| beginning(mesh).trim_end_matches('.').to_owned(), |event| said(&event));
     let mut why = event.map_or_else(Vec::new, |event| about(&event, &looked_at, state));
     why.extend(event.zip(candidates).map_or_else(Vec::new, |(event, tried)| not_chosen(&event, tried)));
     // The one that follows a step is told with it.

@@ -8,12 +8,12 @@ use crate::core::case::{Case, DomainSource, MeshUse, Parameters};
 use crate::core::convert::walk::walk_editing;
 use crate::core::convert::{Candidates, Converter, Event, Phase, StepReport, Stop, Tell, conversion};
 use crate::core::fault::Fault;
-use crate::core::mesh::{Mesh, Names, NodeId, Touched};
+use crate::core::mesh::{Mesh, Names, Touched};
 use crate::core::metric::Sizing;
 use crate::core::prepare::{self, Background};
 use crate::core::progress::{Stage, Watch};
 use crate::core::record::{Export, Measured, Report, Statistics};
-use crate::core::run::explain::{narration, plain};
+use crate::core::run::explain::{Narrator, beginning, plain};
 use crate::core::run::shown::fingerprint;
 use crate::core::run::{Births, Run, ShownState};
 use crate::core::soup::MeshFile;
@@ -92,13 +92,11 @@ pub(super) fn convert_writing_events(
     let mut quads = None;
     let written = events.write(|out| {
         let mut written = Ok(());
-        let mut base = None;
+        let mut narrator = Narrator::default();
         let mut tell = |step: &StepReport<'_>| {
-            if let Event::BaseSelected { a, b, .. } = *step.event {
-                base = Some([a, b]);
-            }
+            narrator.note(step.event);
             if written.is_ok() {
-                let line = EventLine { step, text: plain(&narration(step.event, base)) };
+                let line = EventLine { step, text: plain(&narrator.tell(step.event)) };
                 written = serde_json::to_writer(&mut *out, &line).map_err(io::Error::from).and_then(|()| writeln!(out));
             }
         };
@@ -235,8 +233,7 @@ pub(super) struct Walked<'w, 'a> {
 #[derive(Default)]
 pub(super) struct LastStep {
     event: Option<Event>,
-    /// The base of the quadrilateral under way.
-    base: Option<[NodeId; 2]>,
+    narrator: Narrator,
     /// What a side was chosen from, and what the next step chooses one from, where that is drawn.
     tried: Option<Candidates>,
     next: Option<Candidates>,
@@ -244,11 +241,8 @@ pub(super) struct LastStep {
 
 impl LastStep {
     /// What it did, in a sentence.
-    pub fn caption(&self) -> String {
-        match &self.event {
-            Some(event) => plain(&narration(event, self.base)),
-            None => "The front is the boundary.".to_owned(),
-        }
+    pub fn caption(&self, mesh: &Mesh) -> String {
+        plain(&self.event.as_ref().map_or_else(|| beginning(mesh), |event| self.narrator.tell(event)))
     }
 
     /// The state after it as a figure; `at` is the stop that names it.
@@ -259,7 +253,7 @@ impl LastStep {
         let (changed, candidates) = (changed.elements(), self.tried.as_ref());
         let seen = Seen { mesh, parameters: converter.parameters(), phase, changed, candidates };
         let shown = ShownState { step: converter.counts.steps, at, state: fingerprint(mesh, phase) };
-        FigureFrame { caption: self.caption(), ..FigureFrame::of(&seen, look, shown) }
+        FigureFrame { caption: self.caption(mesh), ..FigureFrame::of(&seen, look, shown) }
     }
 }
 
@@ -290,9 +284,7 @@ impl<'w, 'a> Walked<'w, 'a> {
             if look.layers.has(Layer::Candidates) {
                 (last.tried, last.next) = (last.next.take(), c.candidates());
             }
-            if let Event::BaseSelected { a, b, .. } = *event {
-                last.base = Some([a, b]);
-            }
+            last.narrator.note(event);
             last.event = Some(*event);
             each(c, last)
         })

@@ -213,7 +213,7 @@ fn the_view_describes_the_state_for_screen_readers() {
     for part in [
         format!("The front has {front} segments in {} loops.", moment.loops.len()),
         format!("The base is {} \u{2192} {}, of class ", base.a.0, base.b.0),
-        plain(moment.narration.as_ref().unwrap()),
+        plain(&moment.narration),
         plain(&moment.about[0]),
         format!("Next: {}", plain(&moment.next)),
     ] {

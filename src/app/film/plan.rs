@@ -81,7 +81,7 @@ impl Plan {
         let mut plan = Plan { shots: Vec::new(), samples: Vec::new(), extent, rows: 0, first };
         let mut kept = Samples::default();
         let mut add = |c: &Converter<'_>, last: &LastStep, followed: &Followed| {
-            plan.rows = plan.rows.max(rows(&last.caption()));
+            plan.rows = plan.rows.max(rows(&last.caption(&c.mesh)));
             kept.offer(plan.shots.len(), || last.frame(c, &look, None));
             plan.shots.push(Shot { step: c.counts.steps, followed: followed.now });
             if plan.shots.len() > MOST_FRAMES {

@@ -1,5 +1,5 @@
 //! Text and curves over a view: letters, H-values, frontal angles, node ids, ellipses, scale bar and axes. Small
-//! details are left out; a label that would cover an earlier one is dropped.
+//! details are left out; a label that would cover an earlier one is dropped, but for the name of what is pointed at.
 
 mod corners;
 mod far_base;

@@ -308,7 +308,7 @@ fn described(state: &State) -> String {
     if let Some(s) = base.and_then(|ends| moment.front.iter().find(|s| [s.a, s.b] == ends)) {
         said.push(format!("The base is {}, of class {}.", words::segment([s.a, s.b]), s.class));
     }
-    said.extend(moment.narration.iter().chain(&moment.about).cloned());
+    said.extend(std::iter::once(&moment.narration).chain(&moment.about).cloned());
     said.push(format!("Next: {}", moment.next));
     plain(&said.join(" "))
 }

@@ -5,10 +5,10 @@ use super::subject::Subject;
 use super::text::{Block, Piece};
 use super::things::{Things, watched};
 use super::{Lesson, Names};
-use crate::core::convert::{Event, EventKind};
+use crate::core::convert::EventKind;
 use crate::core::fault::Fault;
 use crate::core::question::Asked;
-use crate::core::run::explain::{event as said, narration};
+use crate::core::run::explain::{beginning, event as said, narration};
 use crate::core::run::{History, Watched};
 
 /// A piece of text, shown at a state.
@@ -112,17 +112,10 @@ fn of_state(part: &Part, history: &mut History) -> Result<Scene, Fault> {
     let shown = |block: &Block| block.pieces().iter().map(show).collect::<Result<Vec<_>, _>>();
     let text = part.blocks.iter().map(shown).collect::<Result<_, _>>()?;
     let narration = match &subject.last {
-        Some(event) => narration(event, subject.base().or_else(|| base_of(event))),
-        None => "The conversion begins: the front is the boundary of the background mesh.".to_owned(),
+        Some(event) => narration(event, subject.base()),
+        None => beginning(&subject.state.mesh),
     };
     Ok(Scene { step, narration, frame, light, text, asked: Vec::new() })
-}
-
-fn base_of(event: &Event) -> Option<[crate::core::mesh::NodeId; 2]> {
-    match event {
-        Event::Formed { nodes: [a, b, ..], .. } => Some([*a, *b]),
-        _ => None,
-    }
 }
 
 /// A step that led to a state, for a list of where one is.

@@ -19,7 +19,7 @@ mod narration;
 
 pub use about::{about, angles_of_swap};
 pub use event::{attempt, event, why_rolled_back};
-pub use narration::narration;
+pub use narration::{Narrator, beginning, narration};
 pub use next::next;
 pub use numbers::{angles_apart, apart, capital, edge, plain, segment};
 pub use segment::{SegmentFacts, Verdict};

@@ -1,6 +1,8 @@
 //! The transport: a row of buttons with the status line, and the timeline below it.
 
-use eframe::egui::{self, Align, ComboBox, Layout, Rect, RichText, Ui, Vec2};
+use std::sync::Arc;
+
+use eframe::egui::{self, Align, ComboBox, Galley, Layout, Painter, Rect, RichText, Ui, Vec2};
 
 use super::{icon_button, on_click, timeline};
 use crate::app::window::command::{Command, KINDS};
@@ -22,10 +24,8 @@ const TRANSPORT: f32 = 36.0;
 /// The room at the sides of the sentence of a step, and the height of a line of it.
 const SIDE: f32 = 14.0;
 const LINE: f32 = 17.0;
-/// The width of the longest sentence.
+/// The width of nearly all sentences.
 const LONGEST: f32 = 1240.0;
-/// The sentence before the first step.
-const BEGINNING: &str = "The front is the boundary of the domain. The first step selects a base segment on it.";
 
 /// What the panel keeps for itself.
 #[derive(Default)]
@@ -193,22 +193,38 @@ fn status(ui: &mut Ui, state: &State, palette: &Palette) {
     ui.label(galley);
 }
 
-/// The height of the sentence of a step in a window of some width: no step changes it.
-pub fn narration_height(width: f32) -> f32 {
-    let lines = (LONGEST / (width - 2.0 * SIDE).max(1.0)).ceil();
-    LINE * lines + 6.0
+/// The lines of the sentence of a step in a window of some width: no step changes them.
+fn narration_lines(width: f32) -> usize {
+    (LONGEST / (width - 2.0 * SIDE).max(1.0)).ceil() as usize
+}
+
+/// Their height.
+fn narration_height(width: f32) -> f32 {
+    LINE * narration_lines(width) as f32 + 6.0
+}
+
+/// A sentence in so many lines: in a smaller font where it needs that, and shortened where that is not enough.
+fn in_lines(painter: &Painter, text: &str, width: f32, lines: usize, palette: &Palette) -> Arc<Galley> {
+    let lay = |size: f32| {
+        let mut job = theme::formula(text, size, ink(palette.text), ink(palette.strong));
+        (job.wrap.max_width, job.wrap.max_rows) = (width.max(1.0), lines);
+        painter.layout_job(job)
+    };
+    let usual = lay(theme::TABLE);
+    if usual.elided { lay(theme::HEAD) } else { usual }
 }
 
 /// What the last step did, in a sentence. A click shows the transcript.
 fn narration(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &Palette) {
     let Some(moment) = &state.run().moment else { return };
-    let text = moment.narration.as_deref().unwrap_or(BEGINNING);
-    let job = theme::formula(text, theme::TABLE, ink(palette.text), ink(palette.strong));
-    let told = ui.add(egui::Label::new(job).wrap().selectable(false).sense(egui::Sense::click()));
+    let (text, width) = (&moment.narration, ui.max_rect().width());
+    let galley = in_lines(ui.painter(), text, width, narration_lines(width + 2.0 * SIDE), palette);
+    let tip = if galley.elided { plain(text) } else { "Show the transcript".to_owned() };
+    let told = ui.add(egui::Label::new(galley).selectable(false).sense(egui::Sense::click()));
     told.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Status, true, plain(text)));
     // Screen readers say it when it changes.
     ui.ctx().accesskit_node_builder(told.id, |node| node.set_live(egui::accesskit::Live::Polite));
-    on_click(&told.on_hover_text("Show the transcript"), Command::Reveal(Pane::History), commands);
+    on_click(&told.on_hover_text(tip), Command::Reveal(Pane::History), commands);
 }
 
 /// A thin bar over the row while work is under way.

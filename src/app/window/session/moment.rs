@@ -29,8 +29,8 @@ pub struct Moment {
     pub standing: u64,
     pub phase: Phase,
     pub event: Option<Event>,
-    /// The last step in a sentence; none at the beginning.
-    pub narration: Option<String>,
+    /// The last step, or the beginning, in a sentence.
+    pub narration: String,
     /// What the last step looked at, and why it did what it did.
     pub about: Vec<String>,
     pub mesh: Arc<Mesh>,

@@ -7,7 +7,38 @@ use super::side::name;
 use crate::core::convert::{Cleaning, Event, Means, Mending, Purpose, SideEdge};
 use crate::core::front::Side;
 use crate::core::kernel::number::{degrees, fixed, grouped};
-use crate::core::mesh::NodeId;
+use crate::core::mesh::{Mesh, NodeId};
+
+/// Tells the steps of a run one after another: it knows the base under way.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Narrator {
+    base: Option<[NodeId; 2]>,
+}
+
+impl Narrator {
+    /// Takes in what a step did; it has to be told of every selection of a base.
+    pub fn note(&mut self, event: &Event) {
+        if let Event::BaseSelected { a, b, .. } = *event {
+            self.base = Some([a, b]);
+        }
+    }
+
+    /// Tells what the step that was taken in last did, in a sentence (see [`narration`]).
+    pub fn tell(&self, event: &Event) -> String {
+        narration(event, self.base)
+    }
+}
+
+/// The state before the first step, in a sentence.
+pub fn beginning(mesh: &Mesh) -> String {
+    match mesh.elements().filter(|&e| mesh.is_quad(e)).count() {
+        0 => "Nothing is converted yet: the front is the boundary of the mesh.".to_owned(),
+        quads => format!(
+            "{} there already: the front is the boundary of what is left.",
+            capital(&are(quads, "quadrilateral"))
+        ),
+    }
+}
 
 /// Tells what a step did in a sentence; `base` is the base of the quadrilateral under way, where there is one.
 pub fn narration(event: &Event, base: Option<[NodeId; 2]>) -> String {

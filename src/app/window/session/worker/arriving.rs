@@ -68,7 +68,6 @@ impl Worker {
             Some(base) => (base.step..).zip(self.history.events(base.step, step)?).collect(),
             None => Vec::new(),
         };
-        let narration = if step > 0 { self.history.transcript(step, step)?.pop() } else { None };
         let is_rolled_back = |told: &(u64, Event)| told.1.kind() == EventKind::RolledBack;
         let attempts = if so_far.iter().any(is_rolled_back) { self.history.attempts()? } else { Vec::new() };
         let state = self.history.state();
@@ -102,7 +101,11 @@ impl Worker {
             standing: state.standing(),
             phase: state.phase().plain(),
             event,
-            narration,
+            // A step that is told with its base has that under way still.
+            narration: match &event {
+                Some(event) => explain::narration(event, state.phase().base().map(|base| [base.a, base.b])),
+                None => explain::beginning(&state.mesh),
+            },
             about,
             mesh: self.copies.of(&state.mesh),
             parameters: state.parameters().clone(),
