@@ -8,7 +8,7 @@ use quadfront::core::convert::{Event, Phase};
 use quadfront::core::front::Side;
 use quadfront::core::mesh::{Mesh, NodeId};
 use quadfront::core::progress::Nobody;
-use quadfront::core::question::{Answer, Asked, Choice, Kind, Rule, Score, Verdict, draw};
+use quadfront::core::question::{Answer, Asked, Choice, Kind, Rule, Score, Series, Verdict, draw, following};
 use quadfront::core::run::{History, Run};
 
 fn history(name: &str, set: &[(&str, &str)]) -> History {
@@ -111,12 +111,49 @@ fn whatever_a_step_answers_can_be_asked_before_it_and_nothing_else() {
     }
 }
 
+fn series(kinds: &[Kind], seed: u64, count: usize) -> Series {
+    Series { seed, count, kinds: kinds.to_vec() }
+}
+
+#[test]
+fn the_next_question_along_a_run_is_the_first_one_that_a_step_leaves_open() {
+    let mut history = history("example1", &[("size_scale", "2")]);
+    let known = history.log().known();
+    let (mut from, mut kinds) = (0, Vec::new());
+    while let Some(next) = following(&mut history, from).unwrap() {
+        // Between two questions there is no selection of a base by the rules, no side and no seam.
+        for step in from + 1..=next.step {
+            let event = history.event(step).unwrap().unwrap();
+            let is_open = matches!(
+                event,
+                Event::BaseSelected { picked: false, .. }
+                    | Event::SideIsFront { .. }
+                    | Event::SideChosen { .. }
+                    | Event::SideSwapped { .. }
+                    | Event::Seamed { .. }
+                    | Event::SeamRefused { .. }
+            );
+            assert!(!is_open, "step {step} is left out: {event:?}");
+        }
+        history.seek(next.step).unwrap();
+        let asked = Asked::of(&mut history, next.kind, None).unwrap();
+        let judged = asked.judge(history.state(), asked.answer()).unwrap();
+        assert_eq!(judged.verdict, Verdict::Right);
+        kinds.push(next.kind);
+        from = next.step + 1;
+    }
+    assert!(from > known - 200 && kinds.len() > 300, "{} questions, the last at {from} of {known}", kinds.len());
+    for kind in [Kind::Segment, Kind::Edge, Kind::Top, Kind::Seam] {
+        assert!(kinds.contains(&kind), "{}", kind.name());
+    }
+}
+
 #[test]
 fn the_same_seed_draws_the_same_questions_and_another_seed_others() {
     let kinds = [Kind::Segment, Kind::Edge, Kind::Top, Kind::Seam, Kind::Form];
     let mut history = history("example1", &[("size_scale", "2")]);
     history.seek(40).unwrap();
-    let mut drawn = |seed| draw(&mut history, &kinds, seed, 12).unwrap();
+    let mut drawn = |seed| draw(&mut history, &series(&kinds, seed, 12)).unwrap();
     let first = drawn(7);
     assert_eq!(first, drawn(7));
     assert_ne!(first, drawn(8));
@@ -127,10 +164,10 @@ fn the_same_seed_draws_the_same_questions_and_another_seed_others() {
         history.seek(question.step).unwrap();
         Asked::of(&mut history, question.kind, None).unwrap();
     }
-    let all = draw(&mut history, &[Kind::Split], 1, 1_000_000).unwrap();
+    let all = draw(&mut history, &series(&[Kind::Split], 1, 1_000_000)).unwrap();
     let splits = (1..=history.log().known()).filter(|step| history.log().event(*step).unwrap().is_about_a_split());
     assert_eq!(all.len(), splits.count(), "no more than there are");
-    assert!(draw(&mut history, &[], 1, 5).unwrap().is_empty());
+    assert!(draw(&mut history, &series(&[], 1, 5)).unwrap().is_empty());
 }
 
 #[test]

@@ -9,11 +9,12 @@ use clap::{Args, Parser, Subcommand};
 use super::figure::FigureOptions;
 #[cfg(feature = "window")]
 use super::film::AnimateArguments;
-use super::input::{InputFormat, Stops, Until, input_format, mesh_format, mesh_use, setting, stops, until};
+use super::input::{InputFormat, Stops, Until, input_format, mesh_format, mesh_use, series, setting, stops, until};
 use super::output::Target;
 use crate::core::case::{ImportOptions, MeshUse};
 use crate::core::fault::Fault;
 use crate::core::formats::Format;
+use crate::core::question::Series;
 use crate::core::record::report::figures::{FIGURES, Figure};
 use crate::core::run::Run;
 
@@ -208,19 +209,29 @@ fn figures() -> impl TypedValueParser<Value = &'static Figure> {
 
 #[derive(Args)]
 pub(super) struct OpenArguments {
-    /// A built-in case, a case file or a run file (.toml), a mesh, or a figure, which opens at the state it shows
-    #[arg(value_name = "CASE|MESH|FIGURE", default_value = "example1")]
+    /// A built-in case, a case file or a run file (.toml), a mesh, a figure, which opens at the state it shows, or a
+    /// lesson (.md)
+    #[arg(value_name = "CASE|MESH|FIGURE|LESSON", default_value = "example1")]
     pub input: String,
     #[command(flatten)]
     pub overrides: Overrides,
     #[command(flatten)]
     pub mesh: MeshArguments,
+    /// Ask what some steps do, drawn from the run by a seed: the same seed asks the same on every machine, for a class.
+    /// The answers can be saved as CSV. Kinds: segment, edge, top, seam, and class, node, form, split, count
+    #[arg(long, value_name = "seed=7,count=10", value_parser = series)]
+    pub predict: Option<Series>,
 }
 
 impl OpenArguments {
     /// Opens an input as it is.
     pub fn of(input: &str) -> OpenArguments {
-        OpenArguments { input: input.to_owned(), overrides: Overrides::default(), mesh: MeshArguments::default() }
+        OpenArguments {
+            input: input.to_owned(),
+            overrides: Overrides::default(),
+            mesh: MeshArguments::default(),
+            predict: None,
+        }
     }
 }
 
@@ -381,6 +392,9 @@ pub(super) struct NotesArguments {
 
 #[derive(Args)]
 pub(super) struct LessonArguments {
+    /// Open it in the window, or the tour
+    #[arg(long, conflicts_with_all = ["json", "answers", "list", "template"])]
+    pub open: bool,
     /// Print it, or the list, as JSON
     #[arg(long)]
     pub json: bool,

@@ -17,6 +17,7 @@ use crate::core::formats::save::load;
 use crate::core::formats::{Format, format};
 use crate::core::kernel::spelling::nearest;
 use crate::core::progress::Watch;
+use crate::core::question::Series;
 use crate::core::record::{figure, run_file};
 use crate::core::run::{Run, Shown};
 use crate::core::soup::MeshFile;
@@ -53,6 +54,11 @@ pub(super) fn mesh_format(text: &str) -> Result<Format, String> {
     let known = || Format::ALL.map(Format::extension).join(", ");
     let found = Format::ALL.into_iter().find(|format| format.extension() == text);
     found.ok_or_else(|| format!("the mesh formats are {}", known()))
+}
+
+/// Parses `--predict`.
+pub(super) fn series(text: &str) -> Result<Series, String> {
+    text.parse().map_err(|fault: Fault| fault.to_string())
 }
 
 /// Parses `--use`.

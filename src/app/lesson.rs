@@ -1,6 +1,7 @@
 //! `lesson`: the lessons of the tour, and a check of one's own.
 
 use std::path::Path;
+use std::process::ExitCode;
 
 use serde_json::{Value, json};
 
@@ -14,8 +15,11 @@ use crate::core::question::Asked;
 use crate::core::run::History;
 use crate::core::run::explain::plain;
 
-/// Lists the lessons of the tour, prints the template, or checks a lesson and prints it.
-pub(super) fn lesson(arguments: &LessonArguments) -> Result<(), Fault> {
+/// Lists the lessons of the tour, prints the template, checks a lesson and prints it, or opens it in the window.
+pub(super) fn lesson(arguments: &LessonArguments) -> Result<ExitCode, Fault> {
+    if arguments.open {
+        return super::open_lesson(arguments.lesson.as_deref().unwrap_or(built_in::LESSONS[0].0));
+    }
     let text = match &arguments.lesson {
         _ if arguments.template => built_in::TEMPLATE.to_owned(),
         None => list(arguments.json)?,
@@ -31,11 +35,12 @@ pub(super) fn lesson(arguments: &LessonArguments) -> Result<(), Fault> {
             }
         }
     };
-    Target::StandardOutput.write(|out| out.write_all(text.as_bytes()))
+    Target::StandardOutput.write(|out| out.write_all(text.as_bytes()))?;
+    Ok(ExitCode::SUCCESS)
 }
 
 /// A lesson of the tour by its name, or a file.
-fn found(name: &str) -> Result<Lesson, Fault> {
+pub(super) fn found(name: &str) -> Result<Lesson, Fault> {
     if let Some(lesson) = built_in::named(name) {
         return lesson;
     }

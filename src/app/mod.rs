@@ -29,6 +29,8 @@ use clap::Parser;
 
 use crate::core::fault::Fault;
 use crate::core::formats::save;
+#[cfg(feature = "window")]
+use command_line::Overrides;
 use command_line::{Cli, Command, OpenArguments};
 use progress::{INTERRUPT, KEEPS};
 
@@ -76,7 +78,7 @@ pub fn run() -> ExitCode {
         #[cfg(feature = "window")]
         Command::Animate(arguments) => film::animate(arguments).map(|()| ExitCode::SUCCESS),
         Command::Render(arguments) => render::render(arguments).map(|()| ExitCode::SUCCESS),
-        Command::Lesson(arguments) => lesson::lesson(arguments).map(|()| ExitCode::SUCCESS),
+        Command::Lesson(arguments) => lesson::lesson(arguments),
         Command::Cases(arguments) => cases::cases(arguments).map(|()| ExitCode::SUCCESS),
     };
     if INTERRUPT.is_asked() {
@@ -91,9 +93,17 @@ pub fn run() -> ExitCode {
 /// Opens the window.
 #[cfg(feature = "window")]
 fn open(arguments: &OpenArguments) -> Result<ExitCode, Fault> {
-    let OpenArguments { input, overrides, mesh } = arguments;
+    let OpenArguments { input, overrides, mesh, predict } = arguments;
     let options = mesh.options();
     let mut source = window::Source::named(input);
+    if let window::Source::Lesson(name) = &source {
+        if *overrides != Overrides::default() || options != Default::default() || predict.is_some() {
+            return Err(Fault::new("A lesson has a run and questions of its own")
+                .at(name)
+                .remedy("Leave the options out, or write [parameters] into the head of the lesson"));
+        }
+        return open_lesson(name);
+    }
     // Report missing files and unsuitable options on the terminal, before the window opens.
     input::check(input, &options, overrides)?;
     if let window::Source::File(path) = &source {
@@ -102,13 +112,31 @@ fn open(arguments: &OpenArguments) -> Result<ExitCode, Fault> {
             source = window::Source::Mesh(path.clone(), options);
         }
     }
-    window::open(source, overrides.clone())
+    window::open(source, overrides.clone(), predict.clone())
+}
+
+/// Opens a lesson in the window.
+#[cfg(feature = "window")]
+fn open_lesson(name: &str) -> Result<ExitCode, Fault> {
+    // Faults of the file are reported on the terminal.
+    lesson::found(name)?;
+    window::open(window::Source::Lesson(name.to_owned()), Overrides::default(), None)
 }
 
 #[cfg(not(feature = "window"))]
 fn open(_: &OpenArguments) -> Result<ExitCode, Fault> {
-    Err(Fault::new("This quadfront was built without its window")
-        .remedy("Build it with the feature \"window\", or use quadfront convert and quadfront render"))
+    Err(without_window())
+}
+
+#[cfg(not(feature = "window"))]
+fn open_lesson(_: &str) -> Result<ExitCode, Fault> {
+    Err(without_window())
+}
+
+#[cfg(not(feature = "window"))]
+fn without_window() -> Fault {
+    Fault::new("This quadfront was built without its window")
+        .remedy("Build it with the feature \"window\", or use quadfront convert and quadfront render")
 }
 
 /// Reports a fault as one line on standard error.

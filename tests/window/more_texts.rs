@@ -3,8 +3,9 @@
 
 use eframe::egui::{Role, Vec2};
 use egui_kittest::kittest::Queryable;
-use quadfront::app::window::{App, Arrangement, Command, Goal, PairCommand, Source, SweepCommand, Which};
+use quadfront::app::window::{App, Arrangement, Command, Goal, PairCommand, Source, StudyCommand, SweepCommand, Which};
 use quadfront::core::convert::EventKind;
+use quadfront::core::lesson::built_in::{self, LESSONS};
 use quadfront::core::record::report::figures::FIGURES;
 
 use super::messages::SIZES;
@@ -226,6 +227,58 @@ fn the_window_for_figures_has_room_for_all_of_its_controls() {
         assert!(frame.contains_rect(last), "{size}: {last:?} in {frame:?}");
         assert!(frame.top() >= 32.0 && frame.bottom() <= size.y - 32.0, "{size}: {frame:?}");
         look(&mut harness, &format!("figures, {size}"), &mut found);
+    }
+    are_none(&found);
+}
+
+#[test]
+fn no_text_of_a_lesson_is_cut_or_covered() {
+    let mut found = Found::new();
+    for size in SIZES {
+        let Some(mut harness) = window("figure-14", size) else { return };
+        for (k, (name, _)) in LESSONS.iter().enumerate() {
+            // Two lessons of three in one theme, the others in the other one; all of them at the smallest size.
+            if size != SIZES[0] && k % 3 > 0 {
+                continue;
+            }
+            if k % 2 == 1 {
+                apply(&mut harness, Command::ToggleTheme);
+            }
+            harness.state_mut().apply(Command::Study(StudyCommand::Open(name)));
+            harness.run_steps(2);
+            let parts = built_in::named(name).unwrap().unwrap().parts.len();
+            for part in 0..parts {
+                until(&mut harness, "the part is told", |harness| {
+                    let study = harness.state().state.study();
+                    study.is_some_and(|study| {
+                        let is_here = study.lesson().is_some_and(|(lesson, at)| lesson.name == *name && at == part);
+                        is_here && study.taught.is_some() && study.decisions.is_some()
+                    })
+                });
+                settle(&mut harness);
+                let what = format!("{name}, part {}, {} x {}", part + 1, size.x, size.y);
+                let look = |harness: &mut Window, found: &mut Found| {
+                    harness.run_steps(4);
+                    note(found, faults(harness, false), &what);
+                    note(found, nameless(harness, false), &what);
+                };
+                look(&mut harness, &mut found);
+                let posed = harness.state().state.study().unwrap().posed().cloned();
+                if let Some(posed) = posed {
+                    posed.hints.iter().for_each(|_| harness.state_mut().apply(Command::Study(StudyCommand::Hint)));
+                    look(&mut harness, &mut found);
+                    harness.state_mut().apply(Command::Study(StudyCommand::ShowAnswer));
+                    until(&mut harness, "the answer is judged", |harness| {
+                        harness.state().state.study().is_some_and(|study| study.is_answered())
+                    });
+                    look(&mut harness, &mut found);
+                }
+                if part + 1 < parts {
+                    harness.state_mut().apply(Command::Study(StudyCommand::Part(part + 1)));
+                    harness.run_steps(2);
+                }
+            }
+        }
     }
     are_none(&found);
 }

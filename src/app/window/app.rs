@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use eframe::egui::{self, Context, Frame, Key, Panel, Popup, RawInput, Ui, ViewportCommand};
 use eframe::{CreationContext, wgpu};
 
-use super::command::Command;
+use super::command::{Command, keys, keys_of_study};
 use super::figures::carried;
 use super::files::{free_path, write_png};
 use super::graphics::{self, Lost};
@@ -136,14 +136,18 @@ impl App {
     fn input(&mut self, context: &Context) {
         let mut commands = self.keys(context);
         let dropped = context.input(|input| input.raw.dropped_files.first().map(|file| file.path().to_path_buf()));
-        commands.extend(dropped.map(|path| Command::Open(Source::File(path))));
+        commands.extend(dropped.map(|path| Command::Open(Source::of_file(path))));
         commands.into_iter().for_each(|command| self.state.apply(command));
     }
 
     fn keys(&self, context: &Context) -> Vec<Command> {
         let typing = context.egui_wants_keyboard_input();
         let busy = self.state.run().is_busy();
-        let mut commands = context.input_mut(|input| presses::commands(&mut input.events, typing, busy));
+        let known = match self.state.study() {
+            Some(study) => keys_of_study(study.explores, self.state.steps_by_operation()),
+            None => keys(),
+        };
+        let mut commands = context.input_mut(|input| presses::commands(&mut input.events, &known, typing, busy));
         if commands.contains(&Command::Escape) && Popup::is_any_open(context) {
             // A menu with all its submenus.
             Popup::close_all(context);
@@ -261,6 +265,8 @@ impl App {
             egui::CentralPanel::default().frame(plain).show(ui, |ui| {
                 self.views[0].given(ui, window, asked, palette);
             });
+        } else if window.shown_study().is_some() {
+            panels::study::show(ui, window, &mut self.views[0], &mut local.study, asked, palette);
         } else {
             // A window without room for the timeline must not change the height that the user has chosen.
             let height = &mut self.layout.timeline_height;

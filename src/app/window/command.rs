@@ -4,7 +4,7 @@ mod keys;
 mod name;
 mod rules;
 
-pub use keys::{Purpose, groups, keys};
+pub use keys::{Purpose, groups, keys, keys_of_study};
 
 pub use rules::Rules;
 
@@ -16,6 +16,7 @@ use super::lists::ListKind;
 use super::pair::PairCommand;
 use super::session::{Direction, Goal, Source};
 use super::state::{SurfaceView, ViewCamera, ViewKind};
+use super::study::StudyCommand;
 use super::sweep::SweepCommand;
 use super::view_layer::ViewLayer;
 use crate::app::command_line::Overrides;
@@ -213,6 +214,8 @@ pub enum Command {
     Escape,
     /// Do something with two runs.
     Pair(PairCommand),
+    /// Learn.
+    Study(StudyCommand),
 }
 
 /// Kinds of events that one can go to.
@@ -258,7 +261,7 @@ impl Command {
     pub fn is_hover(&self) -> bool {
         match self {
             Command::Pair(PairCommand::In(_, command)) => command.is_hover(),
-            command => matches!(command, Command::Hover(_)),
+            command => matches!(command, Command::Hover(_) | Command::Study(StudyCommand::PointAt(_))),
         }
     }
 
@@ -333,6 +336,7 @@ impl Command {
                 | Command::Palette
                 | Command::Help
                 | Command::Screenshot
+                | Command::Study(StudyCommand::Open(_) | StudyCommand::Resume | StudyCommand::PointAt(_))
         )
     }
 
@@ -355,6 +359,7 @@ impl Command {
         all.extend(Pane::ALL.map(Command::Reveal));
         all.extend(SweepCommand::ALL.map(Command::Sweep));
         all.extend(Rules::ALL.map(Command::SetRules));
+        all.extend(StudyCommand::all().into_iter().map(Command::Study));
         all.extend(PairCommand::all().into_iter().map(Command::Pair));
         all.extend(SurfaceView::ALL.map(Command::SurfaceView));
         all.extend(ColourBy::ALL.map(Command::ColourBy));

@@ -25,18 +25,28 @@ const PATIENCE: Duration = Duration::from_secs(120);
 const HASTE: Duration = Duration::from_millis(250);
 
 impl Source {
-    /// The source that a name stands for: a built-in case, or else a file.
+    /// The source that a name stands for: a built-in case, or else a file, which may be a lesson.
     pub fn named(name: &str) -> Source {
         match built_in::all().any(|case| case.0 == name) {
             true => Source::BuiltIn(name.to_owned()),
-            false => Source::File(PathBuf::from(name)),
+            false => Source::of_file(PathBuf::from(name)),
+        }
+    }
+
+    /// The source in a file: a lesson, by the extension of its name, or anything else.
+    pub fn of_file(path: PathBuf) -> Source {
+        let is_lesson = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("md"));
+        // A name that is no text cannot be that of a lesson.
+        match path.to_str().filter(|_| is_lesson) {
+            Some(name) => Source::Lesson(name.to_owned()),
+            None => Source::File(path),
         }
     }
 
     /// Its name.
     pub fn name(&self) -> String {
         match self {
-            Source::BuiltIn(name) => name.clone(),
+            Source::BuiltIn(name) | Source::Lesson(name) => name.clone(),
             Source::File(path) | Source::Mesh(path, _) => path.display().to_string(),
         }
     }
@@ -72,7 +82,7 @@ pub fn answers<T>(waiting: &mut Vec<Receiver<T>>) -> Vec<T> {
 /// Extensions of files that can be opened.
 fn extensions() -> Vec<&'static str> {
     let meshes = Format::ALL.into_iter().map(Format::extension);
-    ["toml", "svg", "png"].into_iter().chain(meshes).collect()
+    ["toml", "svg", "png", "md"].into_iter().chain(meshes).collect()
 }
 
 /// The system's file dialog, on a thread of its own: it may hang if the desktop has no portal.

@@ -5,6 +5,7 @@ mod corners;
 mod far_base;
 mod measures;
 mod refused;
+mod study;
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -130,18 +131,24 @@ pub fn show(
         over.base(&decision, which);
     }
     let names_things = state.document().layers.labels && which == ViewRole::Main;
+    let tells_classes = !state.hides_classes();
+    if which == ViewRole::Main {
+        over.study(state);
+    }
     // What is pointed at has its name, whatever else stands there.
     if names_things {
         over.pointed(state);
     }
-    if which != ViewRole::Whole {
+    if which != ViewRole::Whole && !state.hides_candidates() {
         over.refused(state.frame().hovered.filter(|_| names_things));
     }
     if state.document().layers.arcs && !small {
         over.wedges_and_arcs(&decision, which);
     }
-    if names_things {
+    if names_things && tells_classes {
         over.front_labels(&decision);
+    }
+    if names_things {
         over.node_ids(&decision);
     }
     if which == ViewRole::Main {
@@ -295,7 +302,8 @@ impl Labels<'_> {
             let text = match what {
                 Outlined::Node(node) => format!("node {}", node.0),
                 Outlined::Edge(ends) => match self.segment(ends) {
-                    Some(s) => self.about_segment(s),
+                    Some(s) if !state.hides_classes() => self.about_segment(s),
+                    Some(s) => words::segment([s.a, s.b]),
                     None => words::edge(ends),
                 },
                 Outlined::Element(e) if self.moment.mesh.is_quad(e) => format!("quadrilateral {}", e.0),

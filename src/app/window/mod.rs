@@ -22,6 +22,7 @@ mod figures;
 mod mesh_out;
 mod lists;
 mod sweep;
+mod study;
 mod state;
 mod viewport;
 mod labels;
@@ -36,6 +37,7 @@ use std::time::Instant;
 use eframe::egui::{Vec2, ViewportBuilder};
 
 use crate::core::fault::Fault;
+use crate::core::question::Series;
 
 pub use crate::app::command_line::Overrides;
 pub use app::App;
@@ -46,17 +48,19 @@ pub use lists::ListKind;
 pub use pair::{Arrangement, LinkedBy, PairCommand, Which};
 pub use session::{Direction, Goal, Source};
 pub use state::SurfaceView;
+pub use study::StudyCommand;
 pub use sweep::{SweepCommand, SweepForm};
 pub use view_layer::ViewLayer;
 
 /// The largest window in points: egui's textures end there.
 const LARGEST: f32 = 8192.0;
 
-/// Opens the window on what is named, with its parameters changed, and returns when it is closed.
+/// Opens the window on what is named, with its parameters changed, asks the questions of a series there, and returns
+/// when it is closed.
 ///
 /// # Errors
 /// Where there is no display or no graphics adapter, or where the graphics device is lost.
-pub fn open(source: Source, overrides: Overrides) -> Result<ExitCode, Fault> {
+pub fn open(source: Source, overrides: Overrides, predict: Option<Series>) -> Result<ExitCode, Fault> {
     let started = Instant::now();
     let path = settings::path();
     let kept = path.as_deref().and_then(|path| settings::Settings::read(path).ok().flatten());
@@ -85,6 +89,9 @@ pub fn open(source: Source, overrides: Overrides) -> Result<ExitCode, Fault> {
         Box::new(move |cc| {
             let mut app = App::kept(cc, None, path, watch).keeping(autosave::folder());
             app.apply(Command::OpenWith(source, Box::new(overrides)));
+            if let Some(series) = predict {
+                app.apply(Command::Study(StudyCommand::PredictSeries(series)));
+            }
             Ok(Box::new(app.cleared().started(started)))
         }),
     );

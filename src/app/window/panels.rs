@@ -22,6 +22,7 @@ pub mod notes;
 pub mod figure;
 pub mod import;
 pub mod over;
+pub mod study;
 pub mod sweep;
 
 use eframe::egui::{
@@ -49,6 +50,7 @@ pub struct PanelStates {
     pub figure: figure::PreviewState,
     pub over: over::OverState,
     pub sweep: sweep::SweepPanel,
+    pub study: study::StudyPanel,
 }
 
 /// A button with an icon, its name for screen readers, and a tooltip with its key.

@@ -32,11 +32,15 @@ impl Presses {
     }
 }
 
-/// Takes the presses of keys that stand for commands out of the events, and returns the commands in order. While one
+/// Takes the presses of `known` keys out of the events, and returns their commands in order. While one
 /// types, keys without Ctrl or Alt stand for themselves, except Escape. A key that is held does not run ahead of what
 /// is shown, so that nothing goes on when it is let go.
-pub fn commands(events: &mut Vec<Event>, is_typing: bool, is_busy: bool) -> Vec<Command> {
-    let known = keys();
+pub fn commands(
+    events: &mut Vec<Event>,
+    known: &[(Modifiers, Key, Command)],
+    is_typing: bool,
+    is_busy: bool,
+) -> Vec<Command> {
     let (mut commands, mut repeated) = (Vec::new(), Vec::new());
     events.retain(|event| {
         let Event::Key { key: pressed, modifiers: held, pressed: true, repeat, .. } = event else { return true };
@@ -118,17 +122,17 @@ mod tests {
         };
         let [go, to_end] = [Goal::Quads(1), Goal::End].map(Command::Go);
         let mut events = vec![end.clone(), worst.clone(), right.clone(), right.clone(), text("x")];
-        let found = commands(&mut events, false, true);
+        let found = commands(&mut events, &keys(), false, true);
         assert_eq!(found, [to_end, Command::FindWorst, go.clone(), go.clone()]);
         assert_eq!(events, [text("x")]);
         // What is typed stays.
         let mut events = vec![right.clone(), worst, press(Key::Escape, Modifiers::NONE)];
-        assert_eq!(commands(&mut events, true, false), [Command::FindWorst, Command::Escape]);
+        assert_eq!(commands(&mut events, &keys(), true, false), [Command::FindWorst, Command::Escape]);
         assert_eq!(events, std::slice::from_ref(&right));
         // A key that is held counts once a frame, and not while a state is awaited.
         let mut events = vec![right, held.clone(), held.clone()];
-        assert_eq!(commands(&mut events.clone(), false, false), [go.clone(), go.clone()]);
-        assert_eq!(commands(&mut events, false, true), [go]);
+        assert_eq!(commands(&mut events.clone(), &keys(), false, false), [go.clone(), go.clone()]);
+        assert_eq!(commands(&mut events, &keys(), false, true), [go]);
     }
 
     #[test]

@@ -23,9 +23,11 @@ use super::state::Progress;
 use crate::app::progress;
 use crate::core::convert::{Event, EventKind, Why};
 use crate::core::fault::Fault;
+use crate::core::lesson::{Decision, Lesson, Scene};
 use crate::core::mesh::{ElementId, NodeId};
 use crate::core::prepare::Background;
 use crate::core::progress::{Cancel, Stage, Watch};
+use crate::core::question::{Answer, Asked, Drawn, Hint, Judged, Series};
 use crate::core::run::{
     Born, Chain, ChangeLog, Condition, Edit, Recorder, Run, Sample, SegmentFacts, Stretch, Watched,
 };
@@ -56,6 +58,18 @@ pub enum Ask {
     Count(Vec<Condition>),
     /// Report why a segment of the front was or was not chosen.
     Explain([NodeId; 2]),
+    /// Go where a part of a lesson stands, and tell it.
+    Part(Arc<Lesson>, usize),
+    /// Go where a question is asked, and pose it.
+    Question(Drawn),
+    /// Go to the first state from this step on at which something can be asked, and pose that.
+    NextQuestion(u64),
+    /// Draw the questions of a series, once the whole run is recorded.
+    Draw(Series),
+    /// Judge an answer.
+    Judge(Arc<Asked>, Answer),
+    /// Report the decisions that led to the current state.
+    Decisions,
     /// Change the run.
     Edits(Vec<Edit>),
     /// The recorder's thread hands over what it has recorded.
@@ -97,6 +111,16 @@ pub enum SessionNews {
     Hits(Vec<Vec<u64>>),
     /// Why a segment of the front was or was not chosen, at a step.
     Explained(u64, Arc<Explained>),
+    /// What is told and asked at the state that comes next.
+    Taught(Arc<Taught>),
+    /// The questions of a series.
+    Drawn(Vec<Drawn>),
+    /// No question can be asked from there on.
+    NoQuestion,
+    /// An answer to a question, judged.
+    Judged(Arc<Asked>, Answer, Judged),
+    /// The decisions that led to the state of a step.
+    Decisions(u64, Vec<Decision>),
     /// There is no such step, with the number of requests that this answers.
     Nothing(&'static str, usize),
     /// Something went wrong, with the number of requests that this answers.
@@ -133,6 +157,26 @@ pub struct Explained {
     pub told: SegmentFacts,
     /// The step that deferred it, with the reason of its last failure; none unless it is deferred.
     pub deferred: Option<(u64, Option<Why>)>,
+}
+
+/// What is told and asked at a state.
+#[derive(Clone, Debug)]
+pub struct Taught {
+    /// The step of the state.
+    pub step: u64,
+    /// The part of a lesson; none where a question is asked alone.
+    pub scene: Option<Scene>,
+    /// The questions.
+    pub posed: Vec<Posed>,
+}
+
+/// A question with its hints, the weakest first.
+#[derive(Clone, Debug)]
+pub struct Posed {
+    pub asked: Arc<Asked>,
+    /// The question in words.
+    pub text: String,
+    pub hints: Vec<Hint>,
 }
 
 /// What some steps did, a sentence each.
@@ -291,4 +335,6 @@ pub enum Source {
     File(PathBuf),
     /// A mesh, imported with these options.
     Mesh(PathBuf, ImportOptions),
+    /// A lesson: one of the tour by its name, or a file by its path.
+    Lesson(String),
 }

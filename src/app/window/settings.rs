@@ -8,6 +8,7 @@ use serde_json::Value;
 
 use super::layout::{Layout, TIMELINE_HEIGHTS};
 use super::state::{Document, SurfaceStyle, SurfaceView, Workspace};
+use super::study::Learned;
 use super::sweep::SweepForm;
 use super::view_layer::ViewLayer;
 use crate::core::case::Parameters;
@@ -48,6 +49,9 @@ pub struct Settings {
     /// What is swept.
     #[serde(default)]
     sweep: Option<KeptSweep>,
+    /// What was learnt.
+    #[serde(default, skip_serializing_if = "Learned::is_nothing")]
+    learned: Learned,
 }
 
 /// What is swept, by names. Those that another quadfront does not have are left out.
@@ -95,6 +99,7 @@ impl Settings {
             window,
             docks: layout.arranged(),
             sweep: (workspace.sweep != SweepForm::default()).then(|| KeptSweep::of(&workspace.sweep)),
+            learned: workspace.learned.clone(),
         }
     }
 
@@ -112,6 +117,7 @@ impl Settings {
             workspace.speed = self.speed;
         }
         workspace.sweep = self.sweep.as_ref().map_or_else(SweepForm::default, KeptSweep::form);
+        workspace.learned = self.learned.clone();
         workspace
     }
 

@@ -21,10 +21,12 @@ pub use workspace::{Breakpoint, Document, SurfaceStyle, SurfaceView, Watchpoint,
 use super::autosave::Marks;
 use super::film::FilmWork;
 use super::reducing::Reducing;
-use super::session::{Moment, Stops, Wake};
+use super::session::{Moment, Posed, Stops, Wake};
+use super::study::Study;
 use super::sweep::SweepWork;
 use crate::core::case::Parameters;
 use crate::core::mesh::NodeId;
+use crate::core::question::Series;
 use crate::core::run::{Condition, Run, Watched, run};
 use crate::render::scene::{ColourBy, Outlined};
 
@@ -46,6 +48,18 @@ pub struct State {
     pair: Option<Pair>,
     /// Whether it is the second run of a pair.
     is_second: bool,
+    /// The lesson or the prediction that is under way.
+    study: Option<Study>,
+    /// What begins once the run that is being opened is there.
+    wanted: Option<Wanted>,
+}
+
+/// What begins with a run that is being opened.
+enum Wanted {
+    /// A part of its lesson.
+    Part(usize),
+    /// A prediction.
+    Series(Series),
 }
 
 impl State {
@@ -62,6 +76,8 @@ impl State {
             reducing: None,
             pair: None,
             is_second: false,
+            study: None,
+            wanted: None,
         }
     }
 
@@ -98,6 +114,39 @@ impl State {
     /// The film of the window, once there is one.
     pub fn film(&self) -> Option<&FilmWork> {
         self.film.as_ref()
+    }
+
+    /// The lesson or the prediction that is under way.
+    pub fn study(&self) -> Option<&Study> {
+        self.study.as_ref()
+    }
+
+    /// The same, while the window shows it and not the panels.
+    pub fn shown_study(&self) -> Option<&Study> {
+        self.study.as_ref().filter(|study| !study.explores && self.run.import.is_none() && self.pair.is_none())
+    }
+
+    /// The question that waits for an answer at the current state.
+    pub fn open_question(&self) -> Option<&Posed> {
+        self.shown_study()?.open_question(self.run.moment.as_ref()?.step)
+    }
+
+    /// Whether classes and H-values would give an answer away.
+    pub fn hides_classes(&self) -> bool {
+        let step = self.run.moment.as_ref().map(|moment| moment.step);
+        self.shown_study().zip(step).is_some_and(|(study, step)| study.hides_classes(step))
+    }
+
+    /// Whether the candidates that were refused would hide what a lesson speaks of.
+    pub fn hides_candidates(&self) -> bool {
+        let step = self.run.moment.as_ref().map(|moment| moment.step);
+        self.shown_study().zip(step).is_some_and(|(study, step)| study.hides_candidates(step))
+    }
+
+    /// Whether the keys of the window step by operation.
+    pub fn steps_by_operation(&self) -> bool {
+        let opened = self.run.opened.as_ref();
+        opened.is_some_and(|opened| Study::steps_by_operation(&opened.run.case.name))
     }
 
     /// The sweep of the window, once there is one.

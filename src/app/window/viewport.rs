@@ -26,7 +26,7 @@ use super::session::Moment;
 use super::state::{Look, State, SurfaceView, ViewCamera, ViewKind};
 use super::theme::ink;
 use super::words;
-use crate::core::mesh::ElementId;
+use crate::core::mesh::{ElementId, Mesh, NodeId};
 use crate::core::run::Changes;
 use crate::core::run::explain::plain;
 use crate::render::camera::Camera;
@@ -34,6 +34,7 @@ use crate::render::gpu::{Light, Painter, VIEWS, View};
 use crate::render::palette::{Palette, Rgba};
 use crate::render::pick;
 use crate::render::scene::{Decision, Form, Outlined, Scene, Shading};
+use following::Places;
 use stage::Stage;
 
 /// A view beside the main one.
@@ -49,6 +50,10 @@ pub enum Lens {
 const LENS: usize = 1;
 const WHOLE: usize = 2;
 const BESIDE: usize = 3;
+
+/// Where nodes lie in the plane, which faces the view however it is turned there.
+const IN_PLANE: Places<fn(&Mesh, NodeId) -> DVec3, fn(&Mesh, NodeId) -> DVec3> =
+    Places { place: |mesh, n| mesh.uv(n).extend(0.0), normal: |_, _| DVec3::ZERO };
 
 /// All views of a run, and the two scenes that they share: one of the plane and one in space.
 #[derive(Default)]
@@ -166,8 +171,7 @@ impl Views {
         let (mut camera, mut is_fitted) = aim(state, moment, size, look);
         // Where it is beside a view in space, that one follows the decisions.
         if index == 0
-            && let Some(guided) =
-                self.following.guide(ui, state, moment, camera, size, |mesh, n| mesh.uv(n).extend(0.0))
+            && let Some(guided) = self.following.guide(ui, state, moment, camera, size, &IN_PLANE)
         {
             (camera, is_fitted) = (guided, false);
         }
@@ -309,7 +313,10 @@ fn described(state: &State) -> String {
         said.push(format!("The base is {}, of class {}.", words::segment([s.a, s.b]), s.class));
     }
     said.extend(std::iter::once(&moment.narration).chain(&moment.about).cloned());
-    said.push(format!("Next: {}", moment.next));
+    // What comes next is the answer to a question that is open.
+    if state.open_question().is_none() {
+        said.push(format!("Next: {}", moment.next));
+    }
     plain(&said.join(" "))
 }
 

@@ -4,7 +4,7 @@ use super::parts::Part;
 use super::subject::Subject;
 use super::text::{Block, Piece};
 use super::things::{Things, watched};
-use super::{Lesson, Names};
+use super::{Go, Lesson, Names};
 use crate::core::convert::EventKind;
 use crate::core::fault::Fault;
 use crate::core::question::Asked;
@@ -48,6 +48,12 @@ impl Lesson {
         let until = &self.parts[..self.parts.len().min(part + 1)];
         let Some((part, go)) = until.iter().rev().find_map(|part| Some((part, part.go?))) else { return Ok(0) };
         go.resolve(history).map_err(|fault| fault.at(self.place(part.line)))
+    }
+
+    /// Whether a part stands at the end of the run, which is known only once all of it is recorded.
+    pub fn stands_at_the_end(&self, part: usize) -> bool {
+        let until = &self.parts[..self.parts.len().min(part + 1)];
+        until.iter().rev().find_map(|part| part.go) == Some(Go::End)
     }
 
     /// A part at its state, which is then the current one of the history.

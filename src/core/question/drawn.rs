@@ -1,9 +1,14 @@
 //! Questions drawn from a run: the same seed gives the same ones, on every machine.
 
 use super::kind::Kind;
+use super::series::Series;
 use crate::core::convert::EventKind;
 use crate::core::fault::Fault;
 use crate::core::run::{History, Log};
+
+/// What is asked of a run step by step, for each step the first that it answers. Nothing is asked about steps that only
+/// change what is around a quadrilateral, and not whether one succeeds where it does: most do.
+const ALONG: [Kind; 6] = [Kind::Segment, Kind::Edge, Kind::Top, Kind::Form, Kind::Seam, Kind::Split];
 
 /// A question that was drawn: where it is asked, and what.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -14,25 +19,25 @@ pub struct Drawn {
     pub kind: Kind,
 }
 
-/// Draws so many questions of some kinds from a whole run, in the order of their steps; fewer where the run has fewer.
-/// Each step is asked about once. It runs to the end, unless the recorder is lent.
+/// Draws the questions of a series from a whole run, in the order of their steps; fewer where the run has fewer. Each
+/// step is asked about once. It runs to the end, unless the recorder is lent.
 ///
 /// # Errors
 /// A step of the replay failed.
-pub fn draw(history: &mut History, kinds: &[Kind], seed: u64, count: usize) -> Result<Vec<Drawn>, Fault> {
+pub fn draw(history: &mut History, series: &Series) -> Result<Vec<Drawn>, Fault> {
     history.extend(u64::MAX);
     let mut of_kind: Vec<(Kind, Vec<u64>)> = Vec::new();
-    for &kind in kinds {
+    for &kind in &series.kinds {
         let steps = steps_of(history.log(), kind);
         if !steps.is_empty() && !of_kind.iter().any(|(known, _)| *known == kind) {
             of_kind.push((kind, steps));
         }
     }
-    let mut source = Source(seed);
+    let mut source = Source(series.seed);
     let mut drawn: Vec<Drawn> = Vec::new();
     // Kinds take turns, so that rare ones are asked too.
     let mut turn = 0;
-    while drawn.len() < count && !of_kind.is_empty() {
+    while drawn.len() < series.count && !of_kind.is_empty() {
         turn %= of_kind.len();
         let (kind, steps) = &mut of_kind[turn];
         let kind = *kind;
@@ -51,9 +56,36 @@ pub fn draw(history: &mut History, kinds: &[Kind], seed: u64, count: usize) -> R
     Ok(drawn)
 }
 
+/// The first question that can be asked at a state or at one after it; `None` where the run has no such state, as far
+/// as it is known. The current state is the same afterwards.
+///
+/// # Errors
+/// A step of the replay failed.
+pub fn following(history: &mut History, from: u64) -> Result<Option<Drawn>, Fault> {
+    let events: Vec<EventKind> = history.log().kinds(from + 1, history.log().known()).collect();
+    for (step, event) in (from..).zip(events) {
+        for kind in ALONG.into_iter().filter(|kind| may_answer(*kind, event) && is_open(*kind, event)) {
+            if is_asked(history, kind, step)? {
+                return Ok(Some(Drawn { step, kind }));
+            }
+        }
+    }
+    Ok(None)
+}
+
+/// Whether the answer is no foregone conclusion: the kind of the event alone does not give it.
+fn is_open(kind: Kind, event: EventKind) -> bool {
+    !matches!((kind, event), (Kind::Edge, EventKind::Enhanced) | (Kind::Form, EventKind::Formed))
+}
+
 /// The states before steps that may answer questions of a kind.
 fn steps_of(log: &Log, kind: Kind) -> Vec<u64> {
-    let may = |event: EventKind| match kind {
+    log.kinds(1, log.known()).zip(0..).filter(|(event, _)| may_answer(kind, *event)).map(|(_, before)| before).collect()
+}
+
+/// Whether a step with such an event may answer questions of a kind.
+fn may_answer(kind: Kind, event: EventKind) -> bool {
+    match kind {
         Kind::Segment | Kind::Class => event == EventKind::BaseSelected,
         Kind::Edge => matches!(
             event,
@@ -75,8 +107,7 @@ fn steps_of(log: &Log, kind: Kind) -> Vec<u64> {
         Kind::Split => matches!(event, EventKind::Split | EventKind::SplitRefused),
         Kind::Count => event == EventKind::Formed,
         Kind::Live | Kind::Angle => false,
-    };
-    log.kinds(1, log.known()).zip(0..).filter(|(event, _)| may(*event)).map(|(_, before)| before).collect()
+    }
 }
 
 /// Whether the question can be asked there: events do not say in which phase they were.

@@ -11,7 +11,8 @@
 //! | hints: labels first, then what they mean | [`Hint`] |
 //! | the rules that answers are about | [`Rule`] |
 //! | what was answered so far, by rule, as CSV | [`Score`] |
-//! | questions drawn from a run by a seed | [`draw`] |
+//! | questions drawn from a run by a seed | [`Series`], [`draw`] |
+//! | the next question along a run | [`following`] |
 
 mod rule;
 mod choice;
@@ -24,6 +25,7 @@ mod top;
 mod around;
 mod entity;
 mod asked;
+mod series;
 mod drawn;
 mod score;
 
@@ -31,8 +33,9 @@ pub use answer::Answer;
 pub(in crate::core) use around::swapped;
 pub use asked::Asked;
 pub use choice::Choice;
-pub use drawn::{Drawn, draw};
+pub use drawn::{Drawn, draw, following};
 pub use judged::{Hint, Judged, Verdict};
 pub use kind::Kind;
 pub use rule::Rule;
 pub use score::{Given, Score, Tally};
+pub use series::Series;

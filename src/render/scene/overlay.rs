@@ -1,5 +1,6 @@
 //! Overlays of the mesh: changes by the last operations, front, decision, selection.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use super::mesh::FADES;
@@ -15,6 +16,8 @@ pub const FRONT: [f32; 4] = [3.2, 3.0, 3.0, 2.4];
 const BASE: f32 = 5.0;
 const SIDE: f32 = 3.2;
 const TOP: f32 = 2.6;
+/// The width of what a lesson speaks of.
+const SPOKEN: f32 = 9.0;
 
 /// The current quadrilateral: its base AB and, as far as they are known, its top nodes C (at A) and D (at B).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -75,6 +78,10 @@ pub struct Overlay<'a> {
     pub hovered: Option<Outlined>,
     /// Items that a plot or a list highlights.
     pub lit: &'a [Outlined],
+    /// What a lesson speaks of: in the accent colour, behind everything else.
+    pub spoken: &'a [Outlined],
+    /// Whether all segments of the front look alike, so that nothing tells their classes.
+    pub hides_classes: bool,
     /// The mesh at step 0, where that layer is on.
     pub background: Option<&'a Mesh>,
 }
@@ -93,6 +100,7 @@ impl Scene {
         self.add_changed(&mut over, overlay, palette);
         self.under.replace(&over, self.generation);
         over.clear();
+        self.add_spoken(&mut over, &mut dots, overlay, palette);
         self.add_lit(&mut over, overlay, palette);
         self.add_hover(&mut over, &mut dots, overlay, palette);
         self.add_front(&mut over, overlay, layers, palette);
@@ -145,16 +153,41 @@ impl Scene {
         }
         // Every colour of a map must leave the front visible.
         let (casing, opacity) = if overlay.is_coloured { (4.0, 1.0) } else { (2.0, 0.8) };
+        let class = |segment: &Segment| if overlay.hides_classes { 2 } else { segment.class };
         for segment in overlay.front {
-            let width = FRONT[usize::from(segment.class) - 1] + casing;
+            let width = FRONT[usize::from(class(segment)) - 1] + casing;
             self.add(over, overlay.mesh, [segment.a, segment.b], palette.ground.faded(opacity), width);
         }
-        for class in (1..=4).rev() {
-            for segment in overlay.front.iter().filter(|s| s.class == class) {
-                let k = usize::from(class) - 1;
-                self.add(over, overlay.mesh, [segment.a, segment.b], palette.front[k], FRONT[k]);
+        for row in (1..=4).rev() {
+            for segment in overlay.front.iter().filter(|s| class(s) == row) {
+                let k = usize::from(row) - 1;
+                let colour = if overlay.hides_classes { palette.text } else { palette.front[k] };
+                self.add(over, overlay.mesh, [segment.a, segment.b], colour, FRONT[k]);
             }
         }
+    }
+
+    fn add_spoken(&self, over: &mut Vec<Line>, dots: &mut Vec<Dot>, overlay: &Overlay<'_>, palette: &Palette) {
+        let (mesh, colour) = (overlay.mesh, palette.base.faded(0.5));
+        // Of elements side by side the outline of all of them.
+        let mut sides: BTreeMap<[NodeId; 2], usize> = BTreeMap::new();
+        for what in overlay.spoken {
+            match *what {
+                Outlined::Edge(ends) => self.add(over, mesh, ends, colour, SPOKEN),
+                Outlined::Element(e) if mesh.has_element(e) => {
+                    for h in mesh.half_edges(e) {
+                        let [a, b] = mesh.ends(h);
+                        *sides.entry([a.min(b), a.max(b)]).or_default() += 1;
+                    }
+                }
+                Outlined::Node(node) if mesh.has_node(node) => {
+                    self.add_dot(dots, node, 8.0, palette.base.faded(0.25), palette.base, 2.0);
+                }
+                _ => {}
+            }
+        }
+        let outline = sides.into_iter().filter(|(_, count)| *count == 1);
+        outline.for_each(|(ends, _)| self.add(over, mesh, ends, colour, 0.6 * SPOKEN));
     }
 
     fn add_lit(&self, over: &mut Vec<Line>, overlay: &Overlay<'_>, palette: &Palette) {
@@ -268,6 +301,8 @@ mod tests {
             picked,
             hovered,
             lit: &[],
+            spoken: &[],
+            hides_classes: false,
             background,
             is_coloured: false,
         }
@@ -288,6 +323,36 @@ mod tests {
         assert_eq!(scene.over_dots.items().len(), 4);
         let letters: String = decision.letters().map(|l| l.1).collect();
         assert_eq!(letters, "ABCD");
+    }
+
+    #[test]
+    fn what_is_spoken_of_is_behind_the_front_and_elements_have_one_outline() {
+        let mesh = square();
+        let all: Vec<Outlined> = mesh.elements().map(Outlined::Element).collect();
+        assert_eq!(all.len(), 2);
+        let front = front(&mesh, &Parameters::default());
+        let mut scene = drawn(&mesh);
+        let spoken = [&all[..], &[Outlined::Node(NodeId(1)), Outlined::Node(NodeId(77))]].concat();
+        let overlay = Overlay { front: &front, spoken: &spoken, ..bare(&mesh) };
+        scene.set_overlay(&overlay, Layers::default(), &DARK);
+        let lines = scene.over.items();
+        let halo = DARK.base.faded(0.5).packed();
+        // Four sides of the square; the diagonal is inside.
+        assert_eq!(lines.iter().filter(|line| line.colour == halo).count(), 4);
+        assert!(lines[..4].iter().all(|line| line.colour == halo));
+        assert_eq!(scene.over_dots.items().len(), 1, "node 77 is not there");
+    }
+
+    #[test]
+    fn a_question_about_classes_shows_a_front_of_one_colour() {
+        let mesh = square();
+        let front = front(&mesh, &Parameters::default());
+        let mut scene = drawn(&mesh);
+        let overlay = Overlay { front: &front, hides_classes: true, ..bare(&mesh) };
+        scene.set_overlay(&overlay, Layers::default(), &DARK);
+        let of_classes = DARK.front.map(Rgba::packed);
+        assert!(scene.over.items().iter().all(|line| !of_classes.contains(&line.colour)));
+        assert_eq!(scene.over.items().len(), 2 * front.len());
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use eframe::egui::{Key, Modifiers};
 
-use super::{Command, PairCommand};
+use super::{Command, PairCommand, StudyCommand};
 use crate::app::window::session::{Direction, Goal};
 use crate::app::window::view_layer::ViewLayer;
 use crate::core::kernel::worded::worded;
@@ -16,6 +16,7 @@ worded! {
         Views = "Views",
         Layers = "Layers",
         Files = "Files and changes",
+        Lessons = "Lessons",
         Window = "Window",
     }
 }
@@ -34,6 +35,7 @@ impl Purpose {
             | Command::FindWorst
             | Command::Pair(_) => Purpose::Steps,
             Command::Layer(_) => Purpose::Layers,
+            Command::Study(_) => Purpose::Lessons,
             Command::Fit
             | Command::ShowDecision
             | Command::ToggleFollow
@@ -59,6 +61,7 @@ impl Purpose {
 /// and Alt.
 pub fn groups() -> Vec<(Purpose, Vec<(String, Command)>)> {
     let mut all = keys();
+    all.extend(STUDY);
     all.sort_by_key(|(held, ..)| (held.alt, held.shift, held.command));
     let mut groups = Purpose::ALL.map(|purpose| (purpose, Vec::new())).to_vec();
     for (held, key, command) in all {
@@ -139,6 +142,29 @@ pub fn keys() -> Vec<(Modifiers, Key, Command)> {
     ];
     let digits = [Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5, Key::Num6, Key::Num7, Key::Num8, Key::Num9];
     keys.extend(digits.into_iter().zip(ViewLayer::ALL).map(|(key, layer)| (NONE, key, Command::Layer(layer))));
+    keys
+}
+
+/// The keys of a lesson, which stand for what they stand for elsewhere when none is open.
+const STUDY: [(Modifiers, Key, Command); 3] = [
+    (NONE, Key::Enter, Command::Study(StudyCommand::Continue)),
+    (NONE, Key::H, Command::Study(StudyCommand::Hint)),
+    (NONE, Key::E, Command::Study(StudyCommand::Explore)),
+];
+
+/// All keys while a lesson or a prediction is under way: `explores`, whether the whole window is shown; `by_operation`,
+/// whether the arrows step by operation.
+pub fn keys_of_study(explores: bool, by_operation: bool) -> Vec<(Modifiers, Key, Command)> {
+    let mut own = STUDY.to_vec();
+    if explores {
+        own.retain(|key| key.2 == Command::Study(StudyCommand::Explore));
+    } else if by_operation {
+        own.push((NONE, Key::ArrowRight, Command::Go(Goal::Steps(1))));
+        own.push((NONE, Key::ArrowLeft, Command::Go(Goal::Steps(-1))));
+    }
+    let mut keys = keys();
+    keys.retain(|key| !own.iter().any(|other| (other.0, other.1) == (key.0, key.1)));
+    keys.extend(own);
     keys
 }
 

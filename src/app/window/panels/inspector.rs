@@ -79,6 +79,21 @@ pub fn show(ui: &mut Ui, state: &State, local: &mut InspectorState, commands: &m
     });
 }
 
+/// The candidates for the side of the last step, where it chose one. Returns whether it did.
+pub fn candidates_of_base(
+    ui: &mut Ui,
+    state: &State,
+    moment: &Moment,
+    commands: &mut Vec<Command>,
+    palette: &Palette,
+) -> bool {
+    let base = Decision::of(&moment.phase).base;
+    let segment = base.and_then(|ends| moment.front.iter().find(|s| [s.a, s.b] == ends));
+    let Some((tried, segment)) = moment.candidates.as_ref().zip(segment) else { return false };
+    segment::candidates(ui, state, moment, tried, segment, commands, palette);
+    true
+}
+
 fn title(ui: &mut Ui, text: String, palette: &Palette) {
     ui.label(RichText::new(text).font(theme::semibold(theme::TITLE)).color(ink(palette.strong)));
 }

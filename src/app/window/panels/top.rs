@@ -10,10 +10,13 @@ use crate::app::window::icons;
 use crate::app::window::pair::PairCommand;
 use crate::app::window::session::{Goal, Source};
 use crate::app::window::state::{State, SurfaceView};
+use crate::app::window::study::{Study, StudyCommand, Subject};
 use crate::app::window::sweep::SweepCommand;
 use crate::app::window::theme::{self, ink};
 use crate::app::window::view_layer::ViewLayer;
 use crate::core::case::built_in;
+use crate::core::lesson::built_in::{LESSONS, title as lesson_title};
+use crate::core::question::Series;
 use crate::render::camera::Bearing;
 use crate::render::palette::Palette;
 use crate::render::scene::ColourBy;
@@ -38,12 +41,12 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &P
         ui.add_space(8.0);
         field(ui, bar.width(), commands, palette);
     });
-    // The panel of an import shows its name.
-    if let Some(opened) = state.run().opened.as_ref().filter(|_| state.run().import.is_none()) {
-        let (case, painter) = (&opened.run.case, ui.painter_at(bar));
-        let name = painter.layout_no_wrap(case.name.clone(), theme::semibold(theme::BODY), ink(palette.strong));
-        let room = (bar.width() - 720.0).max(0.0);
-        let title = title(&case.title, &case.name);
+    if let Some(study) = state.study().filter(|study| study.explores) {
+        back(ui, study, bar, commands, palette);
+    } else if let Some([name, title]) = named(state) {
+        let painter = ui.painter_at(bar);
+        let name = painter.layout_no_wrap(name, theme::semibold(theme::BODY), ink(palette.strong));
+        let room = (bar.width() - 780.0).max(0.0);
         let mut job = egui::text::LayoutJob::simple_singleline(title, theme::regular(theme::BODY), ink(palette.weak));
         job.wrap = egui::text::TextWrapping::truncate_at_width((room - name.size().x - 8.0).max(0.0));
         let title = painter.layout_job(job);
@@ -56,6 +59,18 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &P
             painter.galley(below(title_size, name_size.x + 8.0), title, ink(palette.weak));
         }
     }
+}
+
+/// The way back to a lesson that is left for a while.
+fn back(ui: &mut Ui, study: &Study, bar: egui::Rect, commands: &mut Vec<Command>, palette: &Palette) {
+    let name = if study.lesson().is_some() { "Back to the lesson" } else { "Back to the question" };
+    let text = RichText::new(name).font(theme::semibold(theme::BODY)).color(ink(palette.ground));
+    let place = egui::Rect::from_center_size(bar.center(), Vec2::new(170.0, 24.0));
+    let middle = egui::UiBuilder::new().max_rect(place).layout(Layout::top_down(Align::Center));
+    ui.scope_builder(middle, |ui| {
+        let response = ui.add(Button::new(text).fill(ink(palette.base))).on_hover_text("E");
+        on_click(&response, Command::Study(StudyCommand::Explore), commands);
+    });
 }
 
 /// The title without the name in front of it.
@@ -127,9 +142,54 @@ fn menus(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
             items(ui, [Command::Figures, Command::Export, Command::Screenshot], commands);
         });
     });
+    ui.menu_button("Learn", |ui| learn(ui, state, commands));
     ui.menu_button("Help", |ui| {
         items(ui, [Command::Help, Command::Palette, Command::Messages, Command::Go(Goal::Step(0))], commands);
     });
+}
+
+/// Lessons and predictions.
+fn learn(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
+    let study = |command| Command::Study(command);
+    items(ui, [study(StudyCommand::Resume)], commands);
+    ui.menu_button("Lessons", |ui| {
+        ui.set_min_width(TITLES.min(0.6 * ui.ctx().content_rect().width()));
+        let height = ui.ctx().content_rect().height() - ROOM;
+        ScrollArea::vertical().max_height(height).show(ui, |ui| {
+            for ((name, _), number) in LESSONS.iter().zip(1..) {
+                let done = if state.workspace().learned.is_done(name) { icons::CHECK } else { "" };
+                let title = format!("{number}. {}", lesson_title(name).unwrap_or(name));
+                if ui.add(Button::new(title).shortcut_text(done).wrap()).clicked() {
+                    commands.push(study(StudyCommand::Open(name)));
+                    ui.close();
+                }
+            }
+        });
+    });
+    ui.separator();
+    ui.add_enabled_ui(state.run().moment.is_some(), |ui| {
+        items(ui, [StudyCommand::Predict, StudyCommand::PredictSeries(Series::default())].map(study), commands);
+    });
+    if state.study().is_some() {
+        ui.separator();
+        items(ui, [StudyCommand::Explore, StudyCommand::Save, StudyCommand::Leave].map(study), commands);
+    }
+}
+
+/// What stands in the middle of the bar: the case, or the lesson.
+fn named(state: &State) -> Option<[String; 2]> {
+    // The panel of an import shows its name.
+    let opened = state.run().opened.as_ref().filter(|_| state.run().import.is_none())?;
+    let case = &opened.run.case;
+    Some(match state.shown_study().map(|study| &study.subject) {
+        Some(Subject::Lesson { lesson, .. }) => {
+            let at = LESSONS.iter().position(|known| known.0 == lesson.name);
+            let number = at.map(|at| format!("Lesson {} of {}", at + 1, LESSONS.len()));
+            [number.unwrap_or_else(|| "Lesson".to_owned()), lesson.title.clone()]
+        }
+        Some(Subject::Prediction { .. }) => ["Predict".to_owned(), case.title.clone()],
+        None => [case.name.clone(), title(&case.title, &case.name)],
+    })
 }
 
 /// A button that looks like a field and opens the palette.

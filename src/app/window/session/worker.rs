@@ -2,6 +2,7 @@
 //! state, and lends another thread the recorder that runs ahead.
 
 mod arriving;
+mod teaching;
 
 use std::collections::VecDeque;
 use std::sync::Arc;
@@ -12,8 +13,10 @@ use std::time::Instant;
 use super::{Ask, Direction, Explained, Goal, Opened, Past, SessionNews, ToldChain, Tracked, Transcript, Voice};
 use crate::core::convert::{Event, Why};
 use crate::core::fault::Fault;
+use crate::core::lesson::Lesson;
 use crate::core::mesh::{ElementId, NodeId};
 use crate::core::prepare::Background;
+use crate::core::question::{Drawn, Series};
 use crate::core::run::copies::Since;
 use crate::core::run::history::BUDGET;
 use crate::core::run::{
@@ -40,6 +43,12 @@ enum Aim {
     /// One goal after the other.
     Goals(Vec<Goal>),
     Break(Stops, Direction),
+    /// Where a part of a lesson stands.
+    Part(Arc<Lesson>, usize),
+    /// Where a question is asked.
+    Question(Drawn),
+    /// The first state from a step on at which something can be asked.
+    NextQuestion(u64),
 }
 
 /// An aim that is not reached yet.
@@ -59,6 +68,8 @@ pub(super) struct Worker {
     stop: Arc<AtomicBool>,
     /// Where to go as soon as the step is known.
     pending: Option<Pending>,
+    /// The series to draw as soon as the whole run is recorded.
+    series: Option<Series>,
     conditions: Vec<Condition>,
     /// Tells the recorder's thread to stop.
     cancel: Arc<AtomicBool>,
@@ -105,6 +116,7 @@ impl Worker {
             voice,
             stop,
             pending: Some(Pending { aim: Aim::Goals(vec![Goal::Step(0)]), asks: 1, since: Instant::now() }),
+            series: None,
             conditions: Vec::new(),
             cancel,
             tracked: 0,
@@ -157,6 +169,12 @@ impl Worker {
                     self.count();
                 }
                 Ask::Explain([a, b]) => self.explain(a, b),
+                Ask::Part(lesson, part) => self.go(Aim::Part(lesson, part), Instant::now()),
+                Ask::Question(drawn) => self.go(Aim::Question(drawn), Instant::now()),
+                Ask::NextQuestion(from) => self.go(Aim::NextQuestion(from), Instant::now()),
+                Ask::Draw(series) => self.series = Some(series),
+                Ask::Judge(asked, answer) => self.judge(&asked, answer),
+                Ask::Decisions => self.decisions(),
                 Ask::Edits(edits) => self.edit(edits),
                 Ask::Found(found) => self.found(found.0, found.1),
             }
@@ -168,6 +186,7 @@ impl Worker {
                 self.pending = Some(Pending { aim, ..pending });
             }
             self.arrive();
+            self.draw();
         }
         self.cancel.store(true, Ordering::Relaxed);
     }
@@ -178,6 +197,12 @@ impl Worker {
         let (mut aim, mut asks) = (aim, 1);
         if let Some(pending) = self.pending.take() {
             asks += pending.asks;
+            let is_relative = matches!(&aim, Aim::Goals(goals) if goals.iter().all(|goal| goal.is_relative()));
+            if is_relative && matches!(pending.aim, Aim::Part(..) | Aim::Question(_) | Aim::NextQuestion(_)) {
+                // What is told and asked comes first.
+                self.pending = Some(Pending { asks, ..pending });
+                return;
+            }
             if let (Aim::Goals(before), Aim::Goals(goals)) = (pending.aim, &mut aim)
                 && let [goal] = goals[..]
                 && goal.is_relative()
@@ -367,6 +392,10 @@ impl Worker {
                     return self.voice.say(SessionNews::Nothing("No breakpoint is hit in that direction.", asks));
                 }
                 Ok(found) => found,
+                Err(fault) => return self.voice.say(SessionNews::Fault(fault, asks)),
+            },
+            Aim::Part(..) | Aim::Question(_) | Aim::NextQuestion(_) => match self.teach(&aim) {
+                Ok(found) => found.map(|step| (step, None)),
                 Err(fault) => return self.voice.say(SessionNews::Fault(fault, asks)),
             },
         };

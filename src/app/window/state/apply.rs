@@ -6,6 +6,7 @@ mod opening;
 mod pair;
 mod parameters;
 mod saving;
+mod studying;
 mod sweeping;
 
 use std::time::{Duration, Instant};
@@ -21,6 +22,7 @@ use crate::app::window::film::FilmCommand;
 use crate::app::window::layout::Pane;
 use crate::app::window::lists::{ListKind, RecordedSteps};
 use crate::app::window::measure::Measuring;
+use crate::app::window::pair::PairCommand;
 use crate::app::window::reducing::Reducing;
 use crate::app::window::session::{Ask, Direction, Goal, Source};
 use crate::app::window::words;
@@ -36,7 +38,14 @@ impl State {
         if self.run.import.is_some() && !command.fits_import() {
             return self.notice("This command needs a run: convert the mesh first, or cancel the import.".to_owned());
         }
+        let Some(command) = self.as_answer(command) else { return };
         match command {
+            Command::Study(command) => {
+                if self.pair.is_some() && State::begins_study(&command) {
+                    self.apply_to_pair(PairCommand::Close);
+                }
+                self.apply_to_study(command);
+            }
             Command::Pair(command) => self.apply_to_pair(command),
             command if self.pair.is_some() => self.apply_beside(command),
             command => self.apply_alone(command),
@@ -227,15 +236,19 @@ impl State {
             Command::ToggleTheme => self.frame.toggle_theme = true,
             Command::Escape => self.escape(),
             Command::Pair(command) => self.apply_to_pair(command),
+            Command::Study(command) => self.apply_to_study(command),
         }
     }
 
     /// Ends a frame: does what its panels ask for. Returns whether the next frame has something new to show.
     pub(in crate::app::window) fn end_frame(&mut self, commands: Vec<Command>) -> bool {
+        let pointed = std::mem::take(&mut self.frame.pointed);
         let hovered = self.begin_hovering();
         let is_asked = commands.iter().any(|command| !command.is_hover());
         commands.into_iter().for_each(|command| self.apply(command));
-        is_asked | self.is_hovered_anew(hovered)
+        let is_pointed_anew = self.frame.pointed != pointed;
+        self.view.over_epoch += u64::from(is_pointed_anew);
+        is_asked | is_pointed_anew | self.is_hovered_anew(hovered)
     }
 
     /// Forgets what the pointer was on in each run. Returns it.
@@ -314,7 +327,7 @@ impl State {
     }
 
     /// Asks the session for another state; it owes an answer to that.
-    fn ask(&mut self, ask: Ask) {
+    pub(super) fn ask(&mut self, ask: Ask) {
         let Some(session) = &self.run.session else { return };
         session.ask(ask);
         self.run.waiting += 1;

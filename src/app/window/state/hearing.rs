@@ -4,6 +4,7 @@ mod files;
 mod opening;
 mod pair;
 mod stopping;
+mod studying;
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -130,6 +131,15 @@ impl State {
                 }
             }
             SessionNews::Hits(hits) => run.hits = hits,
+            SessionNews::Taught(taught) => self.be_taught(taught),
+            SessionNews::Drawn(drawn) => self.be_asked(drawn),
+            SessionNews::NoQuestion => self.end_questions(),
+            SessionNews::Judged(asked, answer, judged) => self.be_judged(&asked, answer, judged),
+            SessionNews::Decisions(step, decisions) => {
+                if let Some(study) = &mut self.study {
+                    study.decisions = Some((step, decisions));
+                }
+            }
             SessionNews::Explained(step, told) => run.explained = Some((step, told)),
             SessionNews::Nothing(words, asks) => {
                 self.notice(words.to_owned());

@@ -146,6 +146,8 @@ impl<T: Copy> Request<T> {
 pub struct FrameState {
     /// What the pointer is on, in a view or in a panel.
     pub hovered: Option<Outlined>,
+    /// What the words under the pointer mean.
+    pub pointed: Vec<Outlined>,
     /// Switch between dark and light.
     pub toggle_theme: bool,
     /// Save a picture of the window.

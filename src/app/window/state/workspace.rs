@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::app::window::figures::FigureForm;
 use crate::app::window::session::Direction;
+use crate::app::window::study::Learned;
 use crate::app::window::sweep::SweepForm;
 use crate::core::kernel::worded::worded;
 use crate::core::run::{Bookmark, Edit, Watched};
@@ -27,6 +28,8 @@ pub struct Workspace {
     pub figure: FigureForm,
     /// What is swept.
     pub sweep: SweepForm,
+    /// What was learnt.
+    pub learned: Learned,
     undo: Vec<Change>,
     redo: Vec<Change>,
     /// The step whose note was changed last: what is typed there is undone as one change.
@@ -125,6 +128,7 @@ impl Default for Workspace {
             surfaces: SurfaceStyle::default(),
             figure: FigureForm::default(),
             sweep: SweepForm::default(),
+            learned: Learned::default(),
             undo: Vec::new(),
             redo: Vec::new(),
             noted: None,

@@ -4,12 +4,13 @@ use eframe::egui::{self, PointerButton, Rect, Ui};
 use glam::{DQuat, DVec2, DVec3};
 
 use super::cameras::{extent_of, is_seen_well, near, scale_for, zoom};
+use super::following::Places;
 use super::{ViewFrame, Views, moved, paint};
 use crate::app::window::command::Command;
 use crate::app::window::labels;
 use crate::app::window::session::Moment;
 use crate::app::window::state::{Look, State, ViewCamera, ViewKind};
-use crate::core::mesh::NodeId;
+use crate::core::mesh::{Mesh, NodeId};
 use crate::render::camera::{Bearing, Camera};
 use crate::render::gpu::Light;
 use crate::render::palette::Palette;
@@ -44,7 +45,8 @@ impl Views {
         let response = self.canvas(ui, rect, "space", state);
         let size = DVec2::new(f64::from(rect.width()), f64::from(rect.height()));
         let (mut camera, mut is_fitted) = aim(state, moment, size, look);
-        if let Some(guided) = self.following.guide(ui, state, moment, camera, size, |mesh, n| mesh.xyz(n)) {
+        let places = Places { place: |mesh: &Mesh, n| mesh.xyz(n), normal: |mesh: &Mesh, n| mesh.normal(n) };
+        if let Some(guided) = self.following.guide(ui, state, moment, camera, size, &places) {
             (camera, is_fitted) = (guided, false);
         }
         if self.steer(ui, &response, &mut camera, rect, moment) {

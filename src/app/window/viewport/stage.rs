@@ -83,16 +83,19 @@ impl Stage {
         }
         if self.over != Some(state.view().over_epoch) {
             let background = state.run().opened.as_ref().filter(|_| state.document().layers.background);
+            let refused = if state.hides_candidates() { Vec::new() } else { moment.refused() };
             let overlay = Overlay {
                 mesh: &moment.mesh,
                 front: &moment.front,
                 changed: &moment.changed,
                 decision: Decision::of(&moment.phase),
                 is_coloured: state.document().colour_by != ColourBy::State,
-                refused: &moment.refused().iter().map(|candidate| candidate.ends).collect::<Vec<_>>(),
+                refused: &refused.iter().map(|candidate| candidate.ends).collect::<Vec<_>>(),
                 picked: state.document().picked,
                 hovered: state.frame().hovered,
                 lit: &state.view().lit,
+                spoken: &state.spoken(),
+                hides_classes: state.hides_classes(),
                 background: background.map(|opened| &opened.background.mesh),
             };
             Arc::make_mut(&mut self.scene).set_overlay(&overlay, state.document().layers, palette);

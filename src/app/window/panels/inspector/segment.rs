@@ -133,7 +133,7 @@ fn angle(ui: &mut Ui, moment: &Moment, s: &Segment, side: Side, name: &str, pale
 }
 
 /// The candidates for a side in the last step.
-fn candidates(
+pub(super) fn candidates(
     ui: &mut Ui,
     state: &State,
     moment: &Moment,

@@ -5,10 +5,10 @@ use std::time::Instant;
 
 use super::State;
 use crate::app::command_line::Overrides;
-use crate::app::input;
 use crate::app::window::import::{Import, ImportOptions};
 use crate::app::window::session::{Session, Source};
 use crate::app::window::state::Opening;
+use crate::app::{input, lesson};
 use crate::core::case::built_in;
 use crate::core::fault::Fault;
 use crate::core::formats::Format;
@@ -97,5 +97,6 @@ pub(super) fn read(source: &Source, overrides: &Overrides) -> Result<Run, Fault>
         }
         Source::File(path) => input::run_of(path, &ImportOptions::default(), overrides),
         Source::Mesh(path, options) => input::run_of(path, options, overrides),
+        Source::Lesson(name) => Ok(lesson::found(name)?.run()),
     }
 }

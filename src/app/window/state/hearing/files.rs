@@ -17,7 +17,7 @@ impl State {
             self.run.dialog = None;
         }
         match answer {
-            Answer::File(path) => self.apply(Command::Open(Source::File(path))),
+            Answer::File(path) => self.apply(Command::Open(Source::of_file(path))),
             Answer::Missing => {
                 self.view.overlay = Overlay::Path;
                 self.notice("The system has no file dialog: type the path.".to_owned());

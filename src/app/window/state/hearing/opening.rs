@@ -1,5 +1,6 @@
 //! What is being opened: it takes the place of what is open, or is refused.
 
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -76,7 +77,10 @@ impl State {
             // The window itself writes this file.
             Source::File(_) if recovered.is_some() => None,
             Source::File(path) | Source::Mesh(path, _) => Some(Watcher::of(path.clone(), self.wake.clone())),
-            Source::BuiltIn(_) => None,
+            Source::Lesson(name) if Path::new(name).exists() => {
+                Some(Watcher::of(PathBuf::from(name), self.wake.clone()))
+            }
+            Source::BuiltIn(_) | Source::Lesson(_) => None,
         };
         let is_figure =
             matches!(&source, Source::BuiltIn(name) if built_in::FIGURES.iter().any(|figure| figure.0 == name));
@@ -118,6 +122,7 @@ impl State {
             self.recover(marks);
         }
         self.count_breakpoints();
+        self.begin_study();
     }
 
     /// Sets what was set in the window of a recovered run, and says so.
