@@ -213,9 +213,9 @@ fn a_score_counts_first_answers_and_tells_which_rules_are_missed() {
     assert_eq!(tally.share(), Some(2.0 / 3.0));
     let top = score.by_rule().into_iter().find(|(rule, _)| *rule == Rule::TopEdge).unwrap().1;
     assert_eq!((top.right, top.wrong), (1, 1));
-    let expected = "step,kind,answer,right,verdict,rule,hints\n\
-                    0,segment,0-1,0-1,right,front,1\n\
-                    3,edge,0-1,6-9,wrong,top-edge,1\n\
-                    4,node,9,9,right,top-edge,1\n";
+    let expected = "step,kind,of,answer,right,verdict,rule,hints\n\
+                    0,segment,,0-1,0-1,right,front,1\n\
+                    3,edge,,0-1,6-9,wrong,top-edge,1\n\
+                    4,node,,9,9,right,top-edge,1\n";
     assert_eq!(score.csv(), expected);
 }

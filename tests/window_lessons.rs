@@ -306,7 +306,7 @@ fn a_class_with_one_seed_is_asked_the_same_and_answers_are_saved() {
     let mut history = History::open(window.state().state.current_run().unwrap(), &mut Nobody).unwrap();
     let drawn = draw(&mut history, &series).unwrap();
     assert_eq!(drawn.len(), 10);
-    let mut lines = vec!["step,kind,answer,right,verdict,rule,hints".to_owned()];
+    let mut lines = vec!["step,kind,of,answer,right,verdict,rule,hints".to_owned()];
     for (k, question) in drawn.iter().enumerate() {
         taught(&mut window);
         assert_eq!(step(&window), question.step);
@@ -319,7 +319,7 @@ fn a_class_with_one_seed_is_asked_the_same_and_answers_are_saved() {
         give(&mut window, answer);
         let [kind, verdict, rule] = [question.kind.name(), judged.verdict.name(), judged.rule.name()];
         let right = asked.answer().text();
-        lines.push(format!("{},{kind},{},{right},{verdict},{rule},0", question.step, answer.text()));
+        lines.push(format!("{},{kind},,{},{right},{verdict},{rule},0", question.step, answer.text()));
         let onward = if judged.verdict == Verdict::Right { "Continue" } else { "Skip the question" };
         click(&mut window, onward);
     }

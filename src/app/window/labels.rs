@@ -114,6 +114,7 @@ pub fn show(
         over.main_frame(state);
     }
     if which == ViewRole::Main {
+        over.taken.extend(super::viewport::tools_area(frame.rect, moment));
         over.scale_bar();
         over.axes();
     }

@@ -18,6 +18,7 @@ use glam::{DVec2, DVec3};
 
 use cameras::{aim, metric_lens, other_end, steer};
 pub use cameras::{lens_node, middle};
+pub use tools::area as tools_area;
 
 use super::command::Command;
 use super::labels;

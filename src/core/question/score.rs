@@ -7,6 +7,7 @@ use super::asked::Asked;
 use super::judged::{Judged, Verdict};
 use super::kind::Kind;
 use super::rule::Rule;
+use crate::core::run::Watched;
 
 /// An answer that was given.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -15,6 +16,8 @@ pub struct Given {
     pub step: u64,
     /// What was asked.
     pub kind: Kind,
+    /// What it was about, where the question named that.
+    pub of: Option<Watched>,
     /// The answer.
     pub answer: Answer,
     /// The right one.
@@ -67,12 +70,13 @@ pub struct Score {
 impl Score {
     /// Notes a judged answer; false where the question was answered before, which changes nothing.
     pub fn note(&mut self, asked: &Asked, answer: Answer, judged: &Judged, hints: u32) -> bool {
-        if self.given.iter().any(|given| given.step == asked.step && given.kind == asked.kind) {
+        let Asked { step, kind, of, .. } = *asked;
+        if self.given.iter().any(|given| (given.step, given.kind, given.of) == (step, kind, of)) {
             return false;
         }
         let Judged { verdict, rule, .. } = *judged;
         let right = asked.answer();
-        self.given.push(Given { step: asked.step, kind: asked.kind, answer, right, verdict, rule, hints });
+        self.given.push(Given { step, kind, of, answer, right, verdict, rule, hints });
         true
     }
 
@@ -105,11 +109,17 @@ impl Score {
 
     /// One line an answer, below a line of names.
     pub fn csv(&self) -> String {
-        let mut text = "step,kind,answer,right,verdict,rule,hints\n".to_owned();
-        for Given { step, kind, answer, right, verdict, rule, hints } in &self.given {
+        let mut text = "step,kind,of,answer,right,verdict,rule,hints\n".to_owned();
+        for Given { step, kind, of, answer, right, verdict, rule, hints } in &self.given {
             let [kind, verdict, rule] = [kind.name(), verdict.name(), rule.name()];
+            let of = match of {
+                None => String::new(),
+                Some(Watched::Node(node)) => format!("node {}", node.0),
+                Some(Watched::Edge(a, b)) => format!("{}-{}", a.0, b.0),
+                Some(Watched::Element(element)) => format!("element {}", element.0),
+            };
             // Writing to a String cannot fail.
-            let _ = writeln!(text, "{step},{kind},{},{},{verdict},{rule},{hints}", answer.text(), right.text());
+            let _ = writeln!(text, "{step},{kind},{of},{},{},{verdict},{rule},{hints}", answer.text(), right.text());
         }
         text
     }

@@ -131,12 +131,17 @@ impl Labels<'_> {
         let axes = [(glam::DVec3::X, "x"), (glam::DVec3::Y, "y"), (glam::DVec3::Z, "z")];
         // The plane has two.
         let count = if self.scene.form().is_in_space() { 3 } else { 2 };
+        let mut names: Vec<Rect> = Vec::new();
         for (axis, name) in axes.into_iter().take(count) {
             let d = (at(centre + axis) - at(centre)) / self.frame.camera.scale;
             let d = Vec2::new(d.x as f32, d.y as f32);
             self.painter.line_segment([origin, origin + 24.0 * d], stroke);
-            let text = origin + 32.0 * d;
+            // Axes that lie over one another on the screen have their names one behind the other.
+            let places = [32.0, 46.0, 60.0].map(|away| origin + away * d);
+            let is_free = |at: &&Pos2| names.iter().all(|name: &Rect| !name.expand(6.0).contains(**at));
+            let text = places.iter().find(is_free).copied().unwrap_or(places[2]);
             let rect = self.plated(text, Align2::CENTER_CENTER, name);
+            names.push(rect);
             self.taken.push(rect.union(Rect::from_two_pos(origin, text)));
         }
     }

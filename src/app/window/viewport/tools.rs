@@ -4,6 +4,7 @@ use eframe::egui::{Align, Frame, Layout, Margin, Rect, RichText, Role, Ui, UiBui
 
 use crate::app::window::command::Command;
 use crate::app::window::panels::on_click;
+use crate::app::window::session::Moment;
 use crate::app::window::state::{State, SurfaceView};
 use crate::app::window::theme::{self, ink};
 use crate::render::camera::Bearing;
@@ -37,6 +38,11 @@ pub(super) fn show_sides(ui: &mut Ui, rect: Rect, state: &State, commands: &mut 
         ui.separator();
         sides(ui, commands);
     });
+}
+
+/// Where the buttons may stand in a view of a mesh, if it has any: no label does.
+pub fn area(rect: Rect, moment: &Moment) -> Option<Rect> {
+    moment.mesh.embedding().map(|_| rect.with_max_y(rect.top() + 38.0))
 }
 
 fn corner(ui: &mut Ui, rect: Rect, palette: &Palette, buttons: impl FnOnce(&mut Ui, f32)) {

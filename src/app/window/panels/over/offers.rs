@@ -4,22 +4,37 @@
 use crate::app::window::command::Command;
 use crate::app::window::session::{Goal, Source};
 use crate::app::window::state::{Lookup, State};
+use crate::app::window::study::StudyCommand;
 use crate::app::window::sweep::SweepCommand;
 use crate::app::window::words;
 use crate::core::case::Parameters;
+use crate::core::question::Answer;
 use crate::core::run::explain;
 use crate::core::run::{Condition, EditKind};
 use crate::render::scene::Outlined;
 
 /// How a breakpoint is typed, before its condition.
 const BREAK: &str = "break where ";
+/// How an answer to a question is typed, and a series of questions.
+const ANSWER: &str = "answer ";
+const PREDICT: &str = "predict ";
 
-/// The command that a text stands for with a value: `c = 1.5` or `set c = 1.5`, `break where quad.min_angle < 30`.
+/// The command that a text stands for with a value: `c = 1.5` or `set c = 1.5`, `break where quad.min_angle < 30`,
+/// `answer 12-40`, `predict seed=7,count=10`.
 pub fn typed(text: &str) -> Option<Command> {
     let text = text.trim();
-    if let Some(condition) = text.get(..BREAK.len()).filter(|start| start.eq_ignore_ascii_case(BREAK)) {
-        let condition = text[condition.len()..].trim();
+    let behind = |words: &str| {
+        let start = text.get(..words.len())?;
+        start.eq_ignore_ascii_case(words).then(|| text[words.len()..].trim())
+    };
+    if let Some(condition) = behind(BREAK) {
         return Condition::parse(condition).ok().map(|_| Command::AddBreakpoint(condition.to_owned()));
+    }
+    if let Some(answer) = behind(ANSWER) {
+        return Some(Command::Study(StudyCommand::AnswerText(answer.to_owned())));
+    }
+    if let Some(series) = behind(PREDICT).filter(|series| series.contains('=')) {
+        return series.parse().ok().map(|series| Command::Study(StudyCommand::PredictSeries(series)));
     }
     let (key, value) = text.split_once('=')?;
     let key = key.trim();
@@ -35,6 +50,11 @@ pub fn typed(text: &str) -> Option<Command> {
 /// What can be done in the panels at hand, with its name; `state` is the run that they show.
 pub fn at_hand(window: &State, state: &State) -> Vec<(String, Command)> {
     let mut all = Vec::new();
+    if let Some(posed) = state.open_question() {
+        let choices = posed.asked.kind.choices().iter();
+        let answer = |choice| Command::Study(StudyCommand::Answer(Answer::Choice(choice)));
+        all.extend(choices.map(|choice| (format!("Answer: {}", explain::plain(choice.words())), answer(*choice))));
+    }
     let step = |step: u64| Command::Go(Goal::Step(step));
     if let Some(Outlined::Element(element)) = state.document().picked
         && let Lookup::Known(told) = state.run().chain(element)
@@ -90,5 +110,10 @@ mod tests {
         assert_eq!(typed("break where quad.min_angle <"), None, "the condition has no end");
         assert_eq!(typed("break where"), None);
         assert_eq!(typed("ü = é"), None);
+        let study = |command| Some(Command::Study(command));
+        assert_eq!(typed("Answer 12-40"), study(StudyCommand::AnswerText("12-40".to_owned())));
+        let series = "seed=7,count=3".parse().unwrap();
+        assert_eq!(typed("predict seed=7,count=3"), study(StudyCommand::PredictSeries(series)));
+        assert_eq!([typed("predict seed=x"), typed("predict what"), typed("answer")], [None, None, None]);
     }
 }
