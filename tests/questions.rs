@@ -219,3 +219,25 @@ fn a_score_counts_first_answers_and_tells_which_rules_are_missed() {
                     4,node,,9,9,right,top-edge,1\n";
     assert_eq!(score.csv(), expected);
 }
+
+#[test]
+fn a_question_shows_where_it_is_with_all_that_it_may_be_answered_by() {
+    for name in ["figure-14", "figure-18", "example1"] {
+        let mut history = history(name, &[("size_scale", "2")]);
+        let (mut from, mut count) = (0, 0);
+        while let Some(next) = following(&mut history, from).unwrap() {
+            history.seek(next.step).unwrap();
+            let asked = Asked::of(&mut history, next.kind, None).unwrap();
+            let mesh = &history.state().mesh;
+            assert!(asked.place.iter().all(|node| mesh.has_node(*node)), "{name}, step {}", next.step);
+            if let Answer::Edge(ends) = asked.answer() {
+                assert!(ends.iter().all(|node| asked.place.contains(node)), "{name}, step {}: {ends:?}", next.step);
+            }
+            // The edge that is right is one of several.
+            assert!(asked.place.len() > 2, "{name}, step {}", next.step);
+            count += 1;
+            from = next.step + 1;
+        }
+        assert!(count > 3, "{name}");
+    }
+}

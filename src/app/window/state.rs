@@ -137,10 +137,10 @@ impl State {
         self.shown_study().zip(step).is_some_and(|(study, step)| study.hides_classes(step))
     }
 
-    /// Whether the candidates that were refused would hide what a lesson speaks of.
+    /// Whether the candidates that the step before refused would hide what a lesson speaks of.
     pub fn hides_candidates(&self) -> bool {
         let step = self.run.moment.as_ref().map(|moment| moment.step);
-        self.shown_study().zip(step).is_some_and(|(study, step)| study.hides_candidates(step))
+        self.shown_study().zip(step).is_some_and(|(study, step)| study.is_about(step))
     }
 
     /// Whether the keys of the window step by operation.

@@ -10,8 +10,8 @@ pub use learned::Learned;
 use super::icons;
 use super::session::{Posed, Taught};
 use crate::core::case::built_in::FIGURES;
-use crate::core::lesson::{Decision, Lesson, Name, Set, Things, built_in};
-use crate::core::mesh::NodeId;
+use crate::core::lesson::{Decision, Lesson, Things, built_in};
+use crate::core::mesh::{Mesh, NodeId};
 use crate::core::question::{Answer, Drawn, Judged, Kind, Score, Series, Verdict};
 use crate::render::scene::Outlined;
 
@@ -210,12 +210,6 @@ impl Study {
         light.chain(shown).chain(about).collect()
     }
 
-    /// Whether the candidates of the step before would hide what is spoken of at the state of a step.
-    pub fn hides_candidates(&self, step: u64) -> bool {
-        let light = self.lesson().and_then(|(lesson, part)| lesson.parts.get(part)?.light.as_ref());
-        self.is_about(step) && !light.is_some_and(|names| names.names.contains(&Name::Set(Set::Candidates)))
-    }
-
     /// Labels at edges and nodes: hints, and answers with the sign of their verdict.
     pub fn labels(&self, step: u64) -> Vec<(Outlined, String, Verdict)> {
         if !self.is_about(step) {
@@ -239,9 +233,13 @@ impl Study {
 
     /// Where the camera goes at the state of a step, with a number that changes when it is to go there: the nodes that
     /// it shows, none for the whole mesh.
-    pub fn framed(&self, step: u64) -> Option<(u64, &Things)> {
+    pub fn framed(&self, step: u64, mesh: &Mesh) -> Option<(u64, Vec<NodeId>)> {
         let taught = self.taught.as_ref().filter(|taught| taught.step == step)?;
-        taught.scene.as_ref().map(|scene| (self.frames, &scene.frame))
+        let nodes = match (&taught.scene, taught.posed.first()) {
+            (Some(scene), _) => scene.frame.all_nodes(mesh),
+            (None, posed) => posed.map_or_else(Vec::new, |posed| posed.asked.place.clone()),
+        };
+        Some((self.frames, nodes))
     }
 
     /// Whether the keys step by operation: in the small cases of a figure.

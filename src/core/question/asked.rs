@@ -7,7 +7,7 @@ use super::choice::Choice;
 use super::judged::{Hint, Judged};
 use super::kind::Kind;
 use super::rule::Rule;
-use super::{around, entity, selection, side, top};
+use super::{around, entity, place, selection, side, top};
 use crate::core::convert::{Converter, Event, LookedAt, Purpose};
 use crate::core::fault::{Fault, FaultKind};
 use crate::core::kernel::number::{degrees, fixed};
@@ -51,6 +51,8 @@ pub struct Asked {
     pub of: Option<Watched>,
     /// The rule that it is about.
     pub rule: Rule,
+    /// Where on the mesh it is, as the nodes that a view has to show.
+    pub place: Vec<NodeId>,
     looked_at: LookedAt,
     matter: Matter,
 }
@@ -79,7 +81,14 @@ impl Asked {
             (false, None) => of_the_step(history, kind, &looked_at)?,
         };
         let event = if kind.is_of_state() { None } else { history.event(step + 1)? };
-        Ok(Asked { kind, step, of, rule: kind.rule(event.as_ref()), looked_at, matter })
+        let mesh = &history.state().mesh;
+        let place = match (&matter, &event, of) {
+            (Matter::Segment { selecting, .. } | Matter::Class { selecting, .. }, ..) => place::of_selection(selecting),
+            (_, Some(event), _) => place::of_step(mesh, event, &looked_at),
+            (_, None, Some(subject)) => place::of_subject(mesh, subject),
+            (_, None, None) => Vec::new(),
+        };
+        Ok(Asked { kind, step, of, rule: kind.rule(event.as_ref()), place, looked_at, matter })
     }
 
     /// The kinds of questions that the next step answers at the current state, in the order of [`Kind::ALL`].

@@ -24,6 +24,7 @@ mod side;
 mod top;
 mod around;
 mod entity;
+mod place;
 mod asked;
 mod series;
 mod drawn;

@@ -187,7 +187,7 @@ impl Scene {
             }
         }
         let outline = sides.into_iter().filter(|(_, count)| *count == 1);
-        outline.for_each(|(ends, _)| self.add(over, mesh, ends, colour, 0.6 * SPOKEN));
+        outline.for_each(|(ends, _)| self.add(over, mesh, ends, colour, SPOKEN));
     }
 
     fn add_lit(&self, over: &mut Vec<Line>, overlay: &Overlay<'_>, palette: &Palette) {

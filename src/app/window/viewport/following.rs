@@ -7,7 +7,6 @@ use glam::{DVec2, DVec3};
 use super::cameras::near;
 use crate::app::window::session::Moment;
 use crate::app::window::state::State;
-use crate::core::lesson::Things;
 use crate::core::mesh::{Mesh, NodeId};
 use crate::render::camera::Camera;
 use crate::render::scene::Decision;
@@ -65,7 +64,7 @@ impl Following {
     ) -> Option<Camera> {
         let mesh = &*moment.mesh;
         let study = state.shown_study();
-        if let Some((number, frame)) = study.and_then(|study| study.framed(moment.step)) {
+        if let Some((number, frame)) = study.and_then(|study| study.framed(moment.step, mesh)) {
             if self.framed.replace(number) != Some(number) {
                 self.aim = Some(Aim::Nodes(nodes_of(mesh, frame)));
             }
@@ -120,8 +119,7 @@ impl Following {
 
 /// The nodes that a frame shows: with their neighbours where they are too few to tell a size, all of them where it
 /// names nothing.
-fn nodes_of(mesh: &Mesh, frame: &Things) -> Vec<NodeId> {
-    let nodes = frame.all_nodes(mesh);
+fn nodes_of(mesh: &Mesh, nodes: Vec<NodeId>) -> Vec<NodeId> {
     match nodes.len() {
         0 => mesh.nodes().collect(),
         1 | 2 => nodes.iter().flat_map(|n| mesh.neighbours(*n).chain([*n])).collect(),
