@@ -287,6 +287,9 @@ fn what_is_no_lesson_is_refused_with_its_line_and_the_nearest_name() {
         part("\n\n$$ x"),
         part("$$ \\frac{1}{2 $$"),
         part("$$ $$"),
+        part("$$ a = b +\n\\fraq{1}{2} $$ half"),
+        part("$$ a &= b $$"),
+        part("$$ {{thetaA}} $$"),
         part("An <b>odd</b> word"),
         part("\nA {{thetaA}}"),
         part("[x](lights:base)"),
@@ -321,6 +324,7 @@ fn what_the_run_does_not_have_is_refused_with_its_line() {
         part("go: \"start\"", "?live Is it? {of: \"front\"}"),
         part("go: \"start\"", "?angle Is it? {of: \"9\"}"),
         format!("{HEAD}\n# One\nThe top {{{{top}}}}."),
+        part("go: \"start\"", "\n$$ \\text{top} = {{top}} $$"),
     ]
     .map(|text| resolved(&text));
     assert!(told.iter().all(|fault| fault.starts_with("mine.md, line ")), "{told:#?}");
@@ -329,12 +333,27 @@ fn what_the_run_does_not_have_is_refused_with_its_line() {
 
 #[test]
 fn an_equation_and_what_it_says_are_read() {
-    let text = format!("{HEAD}\n# One\nText.\n\n$$ a^2 \\\\\n+ b^2 $$ is **said** here\n\nMore.\n?segment\n");
+    let text = format!("{HEAD}\n# One\nText.\n\n$$ a^2\n+ b_{{12}} $$ is **said** here\n\nMore.\n?segment\n");
     let lesson = parse(&text).unwrap();
-    let Block::Equation { tex, says } = &lesson.parts[0].blocks[1] else { panic!() };
-    assert_eq!((tex.as_str(), says.len()), ("a^2 \\\\ + b^2", 3));
+    let Block::Equation { equation, says } = &lesson.parts[0].blocks[1] else { panic!() };
+    assert_eq!((equation.tex(), equation.text().as_str(), says.len()), ("a^2 + b_{12}", "a^2 + b_12", 3));
     assert_eq!(lesson.parts[0].blocks.len(), 3);
     assert_eq!(lesson.parts[0].asks[0].text, Kind::Segment.words());
+}
+
+#[test]
+fn numbers_of_the_state_are_put_into_equations() {
+    let text =
+        format!("{HEAD}\n# One {{go: \"base_selected#1\"}}\nText {{{{theta_A}}}}.\n\n$$ x < {{{{theta_A}}}} $$\n");
+    let lesson = parse(&text).unwrap();
+    let mut history = History::open(lesson.run(), &mut Nobody).unwrap();
+    let scene = lesson.scene(0, &mut history).unwrap();
+    let angle = &scene.text[0][1].text;
+    assert!(angle.ends_with('\u{b0}'), "{angle}");
+    assert_eq!(scene.equations.len(), 2);
+    assert!(scene.equations[0].is_none());
+    assert_eq!(scene.equations[1].as_ref().unwrap().text(), format!("x < {angle}"));
+    assert!(page(&lesson, &mut history, false).unwrap().contains(&format!("\n    x < {angle}\n")));
 }
 
 /// What a hand may write into a lesson.

@@ -10,7 +10,7 @@ use super::output::Target;
 use super::progress::Progress;
 use crate::core::fault::Fault;
 use crate::core::kernel::spelling::nearest;
-use crate::core::lesson::{Block, Lesson, Piece, Scene, Shown, Things, built_in, page};
+use crate::core::lesson::{Block, Equation, Lesson, Piece, Scene, Shown, Things, built_in, page};
 use crate::core::question::Asked;
 use crate::core::run::History;
 use crate::core::run::explain::plain;
@@ -85,8 +85,9 @@ fn as_json(lesson: &Lesson, history: &mut History) -> Result<Value, Fault> {
             history.seek(asked.step)?;
             questions.push(question(&ask.text, ask.hint.as_deref(), asked, history)?);
         }
-        let Scene { step, narration, frame, light, text, .. } = &scene;
-        let blocks: Vec<Value> = part.blocks.iter().zip(text).map(block).collect();
+        let Scene { step, narration, frame, light, text, equations, .. } = &scene;
+        let blocks = part.blocks.iter().zip(text).zip(equations);
+        let blocks: Vec<Value> = blocks.map(|((of, pieces), equation)| block(of, pieces, equation.as_ref())).collect();
         parts.push(json!({
             "heading": part.heading,
             "line": part.line,
@@ -109,12 +110,14 @@ fn as_json(lesson: &Lesson, history: &mut History) -> Result<Value, Fault> {
     }))
 }
 
-fn block((block, pieces): (&Block, &Vec<Shown>)) -> Value {
+fn block(block: &Block, pieces: &[Shown], equation: Option<&Equation>) -> Value {
     let pieces: Vec<Value> = pieces.iter().map(piece).collect();
-    match block {
-        Block::Paragraph(_) => json!({ "kind": "paragraph", "pieces": pieces }),
-        Block::Item(_) => json!({ "kind": "item", "pieces": pieces }),
-        Block::Equation { tex, .. } => json!({ "kind": "equation", "tex": tex, "pieces": pieces }),
+    match (block, equation) {
+        (_, Some(equation)) => {
+            json!({ "kind": "equation", "tex": equation.tex(), "equation": equation.text(), "pieces": pieces })
+        }
+        (Block::Item(_), None) => json!({ "kind": "item", "pieces": pieces }),
+        (_, None) => json!({ "kind": "paragraph", "pieces": pieces }),
     }
 }
 

@@ -11,6 +11,7 @@ pub mod refused;
 pub mod pick;
 pub mod vector;
 pub mod following;
+pub mod equation;
 #[cfg(feature = "window")]
 pub mod film;
 #[cfg(feature = "window")]

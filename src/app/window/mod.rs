@@ -6,6 +6,7 @@
 mod words;
 mod icons;
 mod theme;
+mod equation;
 mod session;
 mod measure;
 mod view_layer;
@@ -42,6 +43,7 @@ use crate::core::question::Series;
 pub use crate::app::command_line::Overrides;
 pub use app::App;
 pub use command::{Command, Rules};
+pub use equation::{Typeset, equation};
 pub use graphics::Lost;
 pub use import::Gesture;
 pub use lists::ListKind;

@@ -47,6 +47,11 @@ pub fn regular(size: f32) -> FontId {
     FontId::new(size, FontFamily::Proportional)
 }
 
+/// Variables in equations.
+pub fn equation_italic(size: f32) -> FontId {
+    FontId::new(size, FontFamily::Name("equation-italic".into()))
+}
+
 /// Text with subscripts, written `_{x}`, and emphasis, written `**x**`.
 pub fn formula(text: &str, size: f32, colour: Color32, strong: Color32) -> LayoutJob {
     let mut job = LayoutJob::default();
@@ -76,12 +81,13 @@ pub fn install(context: &Context) {
     context.all_styles_mut(sizes);
 }
 
-fn fonts() -> FontDefinitions {
+pub(super) fn fonts() -> FontDefinitions {
     let mut fonts = FontDefinitions::default();
-    let files: [(&str, &'static [u8]); 4] = [
+    let files: [(&str, &'static [u8]); 5] = [
         ("plex", include_bytes!("../../../assets/fonts/IBMPlexSans-Regular.ttf")),
         ("plex-medium", include_bytes!("../../../assets/fonts/IBMPlexSans-Medium.ttf")),
         ("plex-semibold", include_bytes!("../../../assets/fonts/IBMPlexSans-SemiBold.ttf")),
+        ("equation-italic", include_bytes!("../../../assets/fonts/QuadfrontEquation-Italic.ttf")),
         ("phosphor", include_bytes!("../../../assets/fonts/Phosphor.ttf")),
     ];
     for (name, bytes) in files {
@@ -98,6 +104,7 @@ fn fonts() -> FontDefinitions {
         (FontFamily::Monospace, "plex"),
         (FontFamily::Name("medium".into()), "plex-medium"),
         (FontFamily::Name("semibold".into()), "plex-semibold"),
+        (FontFamily::Name("equation-italic".into()), "equation-italic"),
     ] {
         let mut names = vec![first.to_owned(), "phosphor".to_owned()];
         names.extend(fallback.iter().cloned());

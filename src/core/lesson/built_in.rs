@@ -54,3 +54,16 @@ pub fn title(name: &str) -> Option<&'static str> {
     let (_, text) = LESSONS.iter().find(|lesson| lesson.0 == name)?;
     text.lines().find_map(|line| line.strip_prefix("title = \"")?.split('"').next())
 }
+
+/// Every equation of the tour and the template.
+#[cfg(test)]
+pub(crate) fn equations() -> Vec<super::Equation> {
+    let lessons = LESSONS.iter().filter_map(|(name, _)| named(name)?.ok());
+    let template = Lesson::parse(TEMPLATE, "template", "template.md", Path::new(""));
+    let parts = lessons.chain(template).flat_map(|lesson| lesson.parts);
+    let of_block = |block| match block {
+        super::Block::Equation { equation, .. } => Some(equation),
+        super::Block::Paragraph(_) | super::Block::Item(_) => None,
+    };
+    parts.flat_map(|part| part.blocks).filter_map(of_block).collect()
+}

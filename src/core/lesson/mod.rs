@@ -6,6 +6,7 @@
 //! |---|---|
 //! | a lesson as its file has it | [`Lesson`], [`Part`], [`Ask`] |
 //! | its text | [`Block`], [`Piece`], [`Quantity`] |
+//! | its equations, as trees | [`Equation`], [`equation`] |
 //! | where a part stands | [`Go`] |
 //! | what it frames and lights | [`Names`], [`Things`] |
 //! | a part at its state, with its questions | [`Scene`] |
@@ -18,6 +19,7 @@ mod names;
 mod go;
 mod subject;
 mod value;
+pub mod equation;
 mod text;
 mod head;
 mod parts;
@@ -28,6 +30,7 @@ pub mod built_in;
 
 use std::path::Path;
 
+pub use equation::Equation;
 pub use go::Go;
 pub use names::{Letter, Name, Names, Point, Set};
 pub use page::page;

@@ -43,15 +43,14 @@ fn part_text(part: &Part, scene: &Scene) -> String {
             let _ = writeln!(text, "{what}: {}", listed(things));
         }
     }
-    for (block, pieces) in part.blocks.iter().zip(&scene.text) {
+    for ((block, pieces), equation) in part.blocks.iter().zip(&scene.text).zip(&scene.equations) {
         // Pieces that are lit one after another are one.
         let words = pieces.iter().map(words).collect::<String>().replace("**", "");
         let words = plain(&words);
-        let _ = match block {
-            Block::Paragraph(_) => writeln!(text, "\n{words}"),
-            Block::Item(_) => writeln!(text, "- {words}"),
-            Block::Equation { tex, .. } if words.is_empty() => writeln!(text, "\n    {tex}"),
-            Block::Equation { tex, .. } => writeln!(text, "\n    {tex}    {words}"),
+        let _ = match (block, equation) {
+            (_, Some(equation)) => writeln!(text, "{}", format!("\n    {}    {words}", equation.text()).trim_end()),
+            (Block::Item(_), None) => writeln!(text, "- {words}"),
+            (_, None) => writeln!(text, "\n{words}"),
         };
     }
     text

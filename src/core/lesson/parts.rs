@@ -2,6 +2,7 @@
 
 use super::MOST_WORDS;
 use super::attributes::{self, shortened};
+use super::equation::Equation;
 use super::go::Go;
 use super::names::Names;
 use super::text::{self, Block};
@@ -195,14 +196,14 @@ fn equation(lines: &[&str], first: usize) -> Result<(Block, usize), (Fault, usiz
     let rest = loop {
         if let Some((before, after)) = tex.split_once("$$") {
             let after = after.to_owned();
-            tex = before.trim().to_owned();
+            tex = before.to_owned();
             break after;
         }
         at += 1;
         match lines.get(at) {
             Some(line) if !line.trim().is_empty() => {
-                tex.push(' ');
-                tex.push_str(line.trim());
+                tex.push('\n');
+                tex.push_str(line);
             }
             _ => {
                 let fault =
@@ -211,12 +212,13 @@ fn equation(lines: &[&str], first: usize) -> Result<(Block, usize), (Fault, usiz
             }
         }
     };
-    if tex.is_empty() {
+    if tex.trim().is_empty() {
         return Err((Fault::new("The equation is empty").remedy("Write it between $$ and $$"), first));
     }
-    if !is_balanced(&tex) {
-        return Err((Fault::new("The braces of the equation do not match").remedy("Close each { with a }"), first));
-    }
+    let equation = Equation::parse(&tex).map_err(|(fault, byte)| {
+        let before = tex.as_bytes().iter().take(byte).filter(|b| **b == b'\n').count();
+        (fault, first + before)
+    })?;
     let says = text::read(rest.trim()).map_err(|(fault, _)| (fault, at))?;
     let says = match &says[..] {
         [] => Vec::new(),
@@ -226,23 +228,5 @@ fn equation(lines: &[&str], first: usize) -> Result<(Block, usize), (Fault, usiz
             return Err((fault, at));
         }
     };
-    Ok((Block::Equation { tex, says }, at + 1))
-}
-
-fn is_balanced(tex: &str) -> bool {
-    let mut depth = 0_i64;
-    let mut is_escaped = false;
-    for c in tex.chars() {
-        match c {
-            _ if is_escaped => {}
-            '{' => depth += 1,
-            '}' => depth -= 1,
-            _ => {}
-        }
-        is_escaped = c == '\\' && !is_escaped;
-        if depth < 0 {
-            return false;
-        }
-    }
-    depth == 0
+    Ok((Block::Equation { equation, says }, at + 1))
 }

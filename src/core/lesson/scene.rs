@@ -4,7 +4,8 @@ use super::parts::Part;
 use super::subject::Subject;
 use super::text::{Block, Piece};
 use super::things::{Things, watched};
-use super::{Go, Lesson, Names};
+use super::value::Quantity;
+use super::{Equation, Go, Lesson, Names};
 use crate::core::convert::EventKind;
 use crate::core::fault::Fault;
 use crate::core::question::Asked;
@@ -35,6 +36,8 @@ pub struct Scene {
     pub light: Things,
     /// The pieces of text of each block.
     pub text: Vec<Vec<Shown>>,
+    /// The equation of each block that is one, with its numbers put in.
+    pub equations: Vec<Option<Equation>>,
     /// Its questions, in its order.
     pub asked: Vec<Asked>,
 }
@@ -101,27 +104,34 @@ fn of_state(part: &Part, history: &mut History) -> Result<Scene, Fault> {
         None => Ok(Things::default()),
     };
     let (frame, light) = (named(&part.frame)?, named(&part.light)?);
+    let number = |quantity: Quantity| {
+        quantity.text(&subject).ok_or_else(|| {
+            Fault::new(format!("At step {step} there is no {}", quantity.name())).remedy("Go to another step")
+        })
+    };
     let show = |piece: &Piece| -> Result<Shown, Fault> {
         let (text, lights) = match piece {
             Piece::Plain(text) | Piece::Emphasis(text) | Piece::Code(text) => (text.clone(), None),
             Piece::Lit(text) => (text.clone(), Some(light.clone())),
             Piece::Named(text, names) => (text.clone(), Some(Things::named(names, &subject)?)),
             Piece::Value(quantity) | Piece::LitValue(quantity) => {
-                let value = quantity.text(&subject).ok_or_else(|| {
-                    Fault::new(format!("At step {step} there is no {}", quantity.name())).remedy("Go to another step")
-                })?;
-                (value, matches!(piece, Piece::LitValue(_)).then(|| light.clone()))
+                (number(*quantity)?, matches!(piece, Piece::LitValue(_)).then(|| light.clone()))
             }
         };
         Ok(Shown { text, piece: piece.clone(), lights })
     };
     let shown = |block: &Block| block.pieces().iter().map(show).collect::<Result<Vec<_>, _>>();
     let text = part.blocks.iter().map(shown).collect::<Result<_, _>>()?;
+    let equation = |block: &Block| match block {
+        Block::Equation { equation, .. } => equation.with_numbers(number).map(Some),
+        Block::Paragraph(_) | Block::Item(_) => Ok(None),
+    };
+    let equations = part.blocks.iter().map(equation).collect::<Result<_, _>>()?;
     let narration = match &subject.last {
         Some(event) => narration(event, subject.base()),
         None => beginning(&subject.state.mesh),
     };
-    Ok(Scene { step, narration, frame, light, text, asked: Vec::new() })
+    Ok(Scene { step, narration, frame, light, text, equations, asked: Vec::new() })
 }
 
 /// A step that led to a state, for a list of where one is.

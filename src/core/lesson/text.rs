@@ -3,6 +3,7 @@
 
 use pulldown_cmark::{Event, Options, Parser, Tag, TagEnd};
 
+use super::equation::Equation;
 use super::names::Names;
 use super::value::Quantity;
 use crate::core::fault::Fault;
@@ -28,7 +29,7 @@ pub enum Piece {
 }
 
 /// A block of text.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Block {
     /// A paragraph.
     Paragraph(Vec<Piece>),
@@ -37,7 +38,7 @@ pub enum Block {
     /// An equation in TeX's notation, and what it says.
     Equation {
         /// Between the dollars.
-        tex: String,
+        equation: Equation,
         /// Beside it.
         says: Vec<Piece>,
     },
@@ -150,7 +151,8 @@ fn target(url: &str) -> Result<Names, Fault> {
     Names::parse(&names.replace("%20", " "))
 }
 
-fn quantity(name: &str) -> Result<Quantity, Fault> {
+/// A number of the state by its name.
+pub(super) fn quantity(name: &str) -> Result<Quantity, Fault> {
     let name = name.trim();
     Quantity::ALL.into_iter().find(|quantity| quantity.name() == name).ok_or_else(|| {
         let known = || Quantity::ALL.iter().map(|quantity| quantity.name());
@@ -210,7 +212,7 @@ mod tests {
     #[test]
     fn words_are_counted_without_signs_and_equations() {
         let mut blocks = read("A \u{2192} B, of {{NQ}} **two {{step}} words**.").unwrap();
-        blocks.push(Block::Equation { tex: "a b c".to_owned(), says: Vec::new() });
+        blocks.push(Block::Equation { equation: Equation::parse("a b c").unwrap(), says: Vec::new() });
         assert_eq!(words(&blocks), 7);
     }
 }

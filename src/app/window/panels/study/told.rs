@@ -8,19 +8,22 @@ use eframe::egui::{Align, Label, Layout, Response, RichText, Role, Sense, Ui, Ve
 
 use super::{TEXT, heading};
 use crate::app::window::command::Command;
+use crate::app::window::equation::equation;
 use crate::app::window::panels::{note, on_click, part};
 use crate::app::window::session::Goal;
 use crate::app::window::state::State;
 use crate::app::window::study::{Study, StudyCommand, Subject, outlined};
 use crate::app::window::theme::{self, ink};
 use crate::app::window::{icons, words};
-use crate::core::lesson::{Block, Piece, Scene, Shown};
+use crate::core::lesson::{Block, Equation, Piece, Scene, Shown};
 use crate::core::run::explain::plain;
-use crate::render::palette::Palette;
+use crate::render::palette::{Palette, Rgba};
 
 /// The room between two blocks of text, and how far items of lists are set in.
 const GAP: f32 = 9.0;
 const INDENT: f32 = 16.0;
+/// The size of equations.
+const EQUATION: f32 = 17.0;
 
 /// Shows it.
 pub fn show(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &Palette) {
@@ -33,8 +36,8 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &P
             let Some(here) = lesson.parts.get(*at) else { return };
             title(ui, &here.heading, palette);
             if let Some(scene) = study.taught.as_ref().and_then(|taught| taught.scene.as_ref()) {
-                for (block, pieces) in here.blocks.iter().zip(&scene.text) {
-                    show_block(ui, block, pieces, commands, palette);
+                for ((block, pieces), set) in here.blocks.iter().zip(&scene.text).zip(&scene.equations) {
+                    show_block(ui, block, set.as_ref(), pieces, commands, palette);
                     ui.add_space(GAP);
                 }
             }
@@ -128,25 +131,47 @@ fn paragraph(ui: &mut Ui, text: &str, palette: &Palette) {
 }
 
 /// A block of a part.
-fn show_block(ui: &mut Ui, block: &Block, pieces: &[Shown], commands: &mut Vec<Command>, palette: &Palette) {
-    match block {
-        Block::Paragraph(_) => text(ui, pieces, commands, palette),
-        Block::Item(_) => {
+fn show_block(
+    ui: &mut Ui,
+    block: &Block,
+    set: Option<&Equation>,
+    pieces: &[Shown],
+    commands: &mut Vec<Command>,
+    palette: &Palette,
+) {
+    match (block, set) {
+        (_, Some(set)) => {
+            ui.horizontal_wrapped(|ui| {
+                ui.add_space(INDENT);
+                equation(ui, set, EQUATION, ink(palette.strong));
+                ui.add_space(GAP);
+                said(ui, pieces, commands, palette);
+            });
+        }
+        (Block::Item(_), None) => {
             ui.horizontal_top(|ui| {
                 ui.add_space(INDENT - 12.0);
                 ui.label(RichText::new("\u{2022}").font(theme::regular(TEXT)).color(ink(palette.weak)));
-                ui.vertical(|ui| text(ui, pieces, commands, palette));
+                ui.vertical(|ui| text(ui, pieces, palette.text, commands, palette));
             });
         }
-        Block::Equation { tex, .. } => {
-            ui.label(RichText::new(tex).font(theme::regular(TEXT)).color(ink(palette.strong)));
-            text(ui, pieces, commands, palette);
-        }
+        (_, None) => text(ui, pieces, palette.text, commands, palette),
     }
 }
 
+/// What an equation says, in weak text beside it where there is room, else below.
+fn said(ui: &mut Ui, pieces: &[Shown], commands: &mut Vec<Command>, palette: &Palette) {
+    let words: String = pieces.iter().map(|shown| shown.text.as_str()).collect();
+    let wide = ui.painter().layout_no_wrap(plain(&words), theme::regular(TEXT), ink(palette.weak)).size().x;
+    if wide > ui.available_size_before_wrap().x {
+        ui.end_row();
+        ui.add_space(INDENT);
+    }
+    text(ui, pieces, palette.weak, commands, palette);
+}
+
 /// Text with words that are lit, and light what they mean while the pointer is on them.
-fn text(ui: &mut Ui, pieces: &[Shown], commands: &mut Vec<Command>, palette: &Palette) {
+fn text(ui: &mut Ui, pieces: &[Shown], colour: Rgba, commands: &mut Vec<Command>, palette: &Palette) {
     if pieces.is_empty() {
         return;
     }
@@ -154,10 +179,10 @@ fn text(ui: &mut Ui, pieces: &[Shown], commands: &mut Vec<Command>, palette: &Pa
     let mut meant: Vec<(Range<usize>, &Shown)> = Vec::new();
     for shown in pieces {
         let from = job.text.chars().count();
-        append(&mut job, shown, palette);
+        append(&mut job, shown, colour, palette);
         meant.push((from..job.text.chars().count(), shown));
     }
-    job.wrap.max_width = ui.available_width();
+    job.wrap.max_width = ui.available_size_before_wrap().x.max(1.0);
     let galley = ui.painter().layout_job(job);
     let said = plain(&pieces.iter().map(|shown| shown.text.as_str()).collect::<String>());
     let (rect, response) = ui.allocate_exact_size(galley.size(), Sense::hover());
@@ -174,11 +199,11 @@ fn text(ui: &mut Ui, pieces: &[Shown], commands: &mut Vec<Command>, palette: &Pa
 }
 
 /// Appends a piece in its style.
-fn append(job: &mut LayoutJob, shown: &Shown, palette: &Palette) {
+fn append(job: &mut LayoutJob, shown: &Shown, colour: Rgba, palette: &Palette) {
     let (colour, strong) = match shown.piece {
         Piece::Lit(_) | Piece::LitValue(_) | Piece::Named(..) => (palette.accent, palette.accent),
         Piece::Emphasis(_) | Piece::Value(_) | Piece::Code(_) => (palette.strong, palette.strong),
-        Piece::Plain(_) => (palette.text, palette.strong),
+        Piece::Plain(_) => (colour, palette.strong),
     };
     let is_slanted = matches!(shown.piece, Piece::Emphasis(_));
     let formula = theme::formula(&shown.text, TEXT, ink(colour), ink(strong));
