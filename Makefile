@@ -21,7 +21,8 @@ run:
 test:
 	@tools/setup build run test
 	@mkdir -p out
-	QUADFRONT_NEEDS_ADAPTER=1 XDG_RUNTIME_DIR=$$(tools/runtime-dir) cargo test --locked --features uitest
+	QUADFRONT_NEEDS_ADAPTER=1 QUADFRONT_NEEDS_READERS=1 XDG_RUNTIME_DIR=$$(tools/runtime-dir) \
+		cargo test --locked --features uitest
 	@for example in convert_case convert_stl step_events worst_quadrilateral figure; do \
 		cargo run --locked --quiet --features uitest --example $$example > out/$$example.txt || exit 1; \
 	done

@@ -11,7 +11,8 @@ use std::path::PathBuf;
 
 use quadfront::render::look::Look;
 use quadfront::render::picture::{Picture, Seen};
-use quadfront::render::vector::svg::{self, Sheet};
+use quadfront::render::vector::sheet::{self, Sheet};
+use quadfront::render::vector::svg;
 use quadfront::{Converter, Fault, FaultKind, Nobody, Phase, background, built_in};
 
 fn main() -> Result<(), Fault> {
@@ -40,7 +41,7 @@ fn main() -> Result<(), Fault> {
     };
     let picture = Picture::of_state(&seen, &look);
     let sheet = Sheet::column(&case.title, "A state of the merging front", look);
-    std::fs::write(&path, svg::write(&picture, &sheet))
+    std::fs::write(&path, svg::write(&sheet::page(&picture, &sheet)))
         .map_err(|error| Fault::new(error.to_string()).of_kind(FaultKind::Io).at(path.display().to_string()))?;
     println!("step {}, {} quadrilaterals: {}", converter.counts.steps, converter.standing(), path.display());
     Ok(())

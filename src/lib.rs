@@ -56,7 +56,7 @@
 //! | single steps | [`background`], then [`Converter::step`], which returns an [`Event`] |
 //! | any state, forward and backward | [`Run`], [`History`] |
 //! | what a mesh is like | [`Report::of`], [`Statistics`] |
-//! | a figure | [`render::picture::Picture`], [`render::vector::svg`] |
+//! | a figure | [`render::picture::Picture`], [`render::vector`] |
 //!
 //! # Units and conventions
 //!

@@ -148,17 +148,21 @@ fn a_figure_opens_at_the_state_that_it_shows_and_another_state_is_said() {
     }
     let folder = tempfile::tempdir().unwrap();
     let figure = folder.path().join("a.svg");
-    let status = Process::new(env!("CARGO_BIN_EXE_quadfront"))
-        .args(["render", "example1", "--at", "nq=40", "--set", "c=1.9", "-q", "-o"])
-        .arg(&figure)
-        .status();
-    assert!(status.unwrap().success());
     let kept = folder.path().join("runs");
     let mut harness = window(example(), &kept);
-    apply(&mut harness, Command::Open(Source::File(figure.clone())));
-    let state = &harness.state().state;
-    assert_eq!(state.run().moment.as_ref().unwrap().standing, 40);
-    assert_eq!((state.parameter("c").as_deref(), state.view().faults.len()), (Some("1.9"), 0));
+    for name in ["a.pdf", "a.svg"] {
+        let figure = folder.path().join(name);
+        let status = Process::new(env!("CARGO_BIN_EXE_quadfront"))
+            .args(["render", "example1", "--at", "nq=40", "--set", "c=1.9", "-q", "-o"])
+            .arg(&figure)
+            .status();
+        assert!(status.unwrap().success());
+        apply(&mut harness, Command::Open(Source::File(figure)));
+        let state = &harness.state().state;
+        assert_eq!(state.run().moment.as_ref().unwrap().standing, 40, "{name}");
+        assert_eq!((state.parameter("c").as_deref(), state.view().faults.len()), (Some("1.9"), 0));
+        apply(&mut harness, Command::Open(example()));
+    }
     let text = std::fs::read_to_string(&figure).unwrap();
     let at = text.find("fingerprint = \"").unwrap() + 15;
     let old = folder.path().join("old.svg");
@@ -242,6 +246,9 @@ fn the_panel_for_figures_saves_what_it_says_and_a_bad_place_is_told() {
     let again = folder.path().join("again.svg");
     let svg = std::fs::read(stem.with_extension("svg")).unwrap();
     assert!(render(&stem.with_extension("png"), &again, &[]) == svg, "the command line draws the same");
+    harness.get_by_label("Save PDF").click();
+    until(&mut harness, "the PDF is there", |_| stem.with_extension("pdf").is_file());
+    assert!(render(&stem.with_extension("pdf"), &again, &[]) == svg, "and of the PDF");
     let options = ["--at", "step=100", "--ink", "grey", "--size", "60mm"];
     let plain = render(Path::new("example1"), &again, &options);
     assert_ne!(plain.len(), svg.len(), "the nodes are missing there");

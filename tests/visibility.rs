@@ -14,7 +14,8 @@ use quadfront::render::camera::Bearing;
 use quadfront::render::look::{Ink, Layers, Look};
 use quadfront::render::orthographic::{Cover, OnFaces, SeenFace};
 use quadfront::render::picture::Picture;
-use quadfront::render::vector::svg::{Sheet, write};
+use quadfront::render::vector::sheet::{Sheet, page};
+use quadfront::render::vector::svg::write;
 
 /// Fills of live triangles and dead quadrilaterals in a figure.
 const LIVE: &str = "#FFFFFF";
@@ -121,7 +122,7 @@ fn check(name: &str, mesh: &MeshFile, [azimuth, elevation]: [f64; 2], places: us
         ..Look::default()
     };
     let sheet = Sheet { width: 502.0, ..Sheet::column("", "", look) };
-    let svg = write(&Picture::of_mesh_by(mesh, &look), &sheet);
+    let svg = write(&page(&Picture::of_mesh_by(mesh, &look), &sheet));
     // The picture is as wide as the page within a margin of a point.
     let scale = 500.0 / (high - low).x;
     let on_page = |p: DVec2| DVec2::new(1.0 + (p.x - low.x) * scale, 1.0 + (high.y - p.y) * scale);
@@ -306,7 +307,7 @@ fn ten_thousand_faces_are_drawn_with_the_same_bytes_and_not_many_more_of_them() 
     let bumps = grid(100, |x, y| DVec3::new(x, y, 0.2 * libm::sin(9.0 * x) * libm::cos(7.0 * y)), |_, _| false);
     let look =
         Look { layers: Layers::usual(Ink::Colour, false), from: Bearing::Angles([33.0, 12.0, 0.0]), ..Look::default() };
-    let drawn = |mesh: &MeshFile| write(&Picture::of_mesh_by(mesh, &look), &Sheet::column("", "", look));
+    let drawn = |mesh: &MeshFile| write(&page(&Picture::of_mesh_by(mesh, &look), &Sheet::column("", "", look)));
     let svg = drawn(&bumps);
     assert!(svg == drawn(&bumps));
     let whole = svg.matches('Z').count();

@@ -48,7 +48,7 @@ pub(super) enum Command {
     Reduce(ReduceArguments),
     /// Sweep one or two parameters: what a conversion ends with for each of their values, as a heat map or a table
     Sweep(SweepArguments),
-    /// Draw a mesh, or states of a conversion, as SVG or PNG
+    /// Draw a mesh, or states of a conversion, as SVG, PDF or PNG
     Render(RenderArguments),
     /// Make a film of a conversion (GIF, animated PNG)
     #[cfg(feature = "window")]
@@ -65,7 +65,7 @@ pub(super) enum Command {
 #[derive(Args, Default)]
 pub(super) struct Source {
     /// A built-in case, a case file or a run file (.toml), a mesh (.msh .mesh .vtu .obj .inp .ply .stl .gltf .glb), a
-    /// figure with an embedded run (.svg .png), or - for standard input
+    /// figure with an embedded run (.svg .png .pdf), or - for standard input
     #[arg(value_name = "CASE|MESH|FIGURE")]
     pub input: String,
     /// Format of standard input: toml (a case), msh, mesh, vtu, obj, inp, ply, stl, gltf, glb
@@ -195,7 +195,7 @@ pub(super) struct Destination {
     /// Write Gmsh format 2.2 instead of 4.1
     #[arg(long)]
     pub msh2: bool,
-    /// Write a picture (.svg .png), or - for standard output (SVG)
+    /// Write a picture (.svg .pdf .png), or - for standard output (SVG)
     #[arg(long, value_name = "FILE")]
     pub picture: Option<Target>,
 }
@@ -327,7 +327,7 @@ pub(super) struct SweepArguments {
     /// (seconds) only where it is shown. Repeatable: the first one is in the picture
     #[arg(long, value_name = "FIGURE", value_parser = figures())]
     pub show: Vec<&'static Figure>,
-    /// Write the sweep (.svg .png .csv .json), also while it goes on (repeatable). A .json that is there is gone on
+    /// Write the sweep (.svg .pdf .png .csv .json), also while it goes on (repeatable). A .json that is there is gone on
     /// with: cells of the same case, parameters and version are kept
     #[arg(short, long, value_name = "FILE")]
     pub out: Vec<Target>,
@@ -374,7 +374,7 @@ pub(super) struct RenderArguments {
     pub at: Option<Stops>,
     #[command(flatten)]
     pub figure: FigureOptions,
-    /// Write the picture (.svg .png), or - for standard output (SVG)
+    /// Write the picture (.svg .pdf .png), or - for standard output (SVG)
     #[arg(short, long, value_name = "FILE")]
     pub out: Target,
 }

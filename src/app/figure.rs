@@ -7,6 +7,7 @@ pub(super) use options::{FigureOptions, LayerWords, Plot};
 pub(super) use options::{LINE_SCALES, PartWords, Size, font_size};
 
 use super::convert::describe;
+use super::output::PictureFormat;
 use super::work::{self, FigureFrame};
 use crate::core::convert::Stop;
 use crate::core::fault::Fault;
@@ -15,26 +16,24 @@ use crate::core::record::run_file;
 use crate::core::run::{Run, Shown};
 use crate::render::picture::Picture;
 use crate::render::vector::histogram::Histogram;
-use crate::render::vector::svg::{self, Sheet};
+use crate::render::vector::page::Page;
+use crate::render::vector::sheet::{self, Sheet};
+use crate::render::vector::{pdf, svg};
 
 /// A figure, ready to be written.
-#[cfg_attr(not(feature = "window"), expect(dead_code, reason = "a PNG embeds them"))]
 pub(super) struct Figure {
-    /// The SVG.
-    pub svg: String,
-    /// A description of what it shows.
-    pub description: String,
-    /// The text of the embedded run.
-    pub run: Option<String>,
+    /// What is drawn, with the text of the embedded run.
+    pub page: Page,
     /// Dots per inch.
+    #[cfg_attr(not(feature = "window"), expect(dead_code, reason = "a PNG has them"))]
     dots: f64,
 }
 
 impl Figure {
     /// A figure of a mesh without a run.
     pub fn of_mesh(picture: &Picture, options: &FigureOptions) -> Figure {
-        let svg = svg::write(picture, &options.sheet(false, &picture.title, &picture.description, None));
-        Figure { svg, description: picture.title.clone(), run: None, dots: options.dots() }
+        let sheet = options.sheet(false, &picture.title, &picture.description, None);
+        Figure { page: sheet::page(picture, &sheet), dots: options.dots() }
     }
 
     /// A figure of states of a run; with `embeds` it contains the run.
@@ -65,29 +64,46 @@ impl Figure {
         below.as_ref().map_or(Ok(()), |caption| options.check_room(caption))?;
         let sheet = options.sheet(strip, &run.case.title, &description, embedded.as_deref());
         let sheet = Sheet { caption: below, ..sheet };
-        let svg = match frames {
+        let page = match frames {
             [FigureFrame { statistics: Some(statistics), .. }] => match options.plot {
-                Some(Plot::Angles) => Histogram::of_angles(statistics).write(&sheet),
-                _ => Histogram::of_lengths(statistics).write(&sheet),
+                Some(Plot::Angles) => Histogram::of_angles(statistics).draw(&sheet),
+                _ => Histogram::of_lengths(statistics).draw(&sheet),
             },
-            [frame] => svg::write(&frame.picture, &sheet),
+            [frame] => sheet::page(&frame.picture, &sheet),
             _ => {
                 let captioned =
                     |frame: &FigureFrame| Picture { title: caption(frame.shown.at), ..frame.picture.clone() };
-                svg::strip(&frames.iter().map(captioned).collect::<Vec<_>>(), &sheet)
+                sheet::strip(&frames.iter().map(captioned).collect::<Vec<_>>(), &sheet)
             }
         };
-        Ok(Figure { svg, description, run: embedded, dots: options.dots() })
+        Ok(Figure { page, dots: options.dots() })
     }
 
-    /// The figure as pixels.
+    /// A plot without a run.
+    pub fn of_page(page: Page) -> Figure {
+        Figure { page, dots: FigureOptions::default().dots() }
+    }
+
+    /// The figure as an SVG.
+    pub fn svg(&self) -> String {
+        svg::write(&self.page)
+    }
+
+    /// The figure as a file.
     ///
     /// # Errors
     /// A size that is not possible.
-    #[cfg(feature = "window")]
-    pub fn png(&self) -> Result<Vec<u8>, Fault> {
-        use crate::render::vector::png;
-        png::write(&self.svg, self.dots, png::Carried { description: &self.description, run: self.run.as_deref() })
+    pub fn bytes(&self, format: PictureFormat) -> Result<Vec<u8>, Fault> {
+        match format {
+            PictureFormat::Svg => Ok(self.svg().into_bytes()),
+            PictureFormat::Pdf => pdf::write(&self.page),
+            #[cfg(feature = "window")]
+            PictureFormat::Png => {
+                use crate::render::vector::png;
+                let Page { description, run, .. } = &self.page;
+                png::write(&self.svg(), self.dots, png::Carried { description, run: run.as_deref() })
+            }
+        }
     }
 }
 

@@ -27,7 +27,8 @@ use crate::render::following::{Extent, follow};
 use crate::render::look::{FigurePart, Look};
 use crate::render::palette;
 use crate::render::vector::png::{self, Raster};
-use crate::render::vector::svg::{self, Sheet};
+use crate::render::vector::sheet::{self, Caption, Sheet};
+use crate::render::vector::svg;
 use plan::Plan;
 
 /// The width of a film whose size is not said, in pixels.
@@ -102,7 +103,7 @@ pub(super) fn make(
     let look = figure.look(false);
     let background = run.background(watch)?;
     let plan = Plan::of(run, &background, film, &figure, watch)?;
-    figure.caption("").map_or(Ok(()), |none| figure.check_room(&svg::Caption { rows: plan.rows, ..none }))?;
+    figure.caption("").map_or(Ok(()), |none| figure.check_room(&Caption { rows: plan.rows, ..none }))?;
     let title = describe(&run.case);
     let artist = Artist::of(&plan, film, &figure, &look, &title);
     let size = png::size(&artist.svg(0, &plan.first), figure.dots())?;
@@ -207,9 +208,9 @@ impl<'a> Artist<'a> {
     fn svg(&self, k: usize, frame: &FigureFrame) -> String {
         let part = self.parts.as_ref().map_or(self.look.part, |parts| parts.get(k).copied());
         let sheet = self.figure.sheet(false, self.title, "", None);
-        let caption = self.figure.caption(&frame.caption).map(|caption| svg::Caption { rows: self.rows, ..caption });
+        let caption = self.figure.caption(&frame.caption).map(|caption| Caption { rows: self.rows, ..caption });
         let look = Look { part, ..sheet.look };
-        svg::write(&frame.picture, &Sheet { look, extent: Some(self.extent), caption, ..sheet })
+        svg::write(&sheet::page(&frame.picture, &Sheet { look, extent: Some(self.extent), caption, ..sheet }))
     }
 
     /// Frame `k` as pixels.

@@ -295,7 +295,7 @@ fn kind(name: &str, from: Option<InputFormat>) -> Result<Kind, Fault> {
             })
         }
         Err(mut fault) => {
-            fault.remedy += ", .toml for cases, and .svg and .png for figures with an embedded run";
+            fault.remedy += ", .toml for cases, and .svg, .png and .pdf for figures with an embedded run";
             Err(fault)
         }
     }

@@ -121,7 +121,7 @@ fn section(
     // The one that follows a step is told with it.
     why.extend(history.attempts()?.iter().filter(|tried| !tried.steps.is_empty()).map(attempt));
     let why = list(&why);
-    let alt = escaped(&figure.description);
+    let alt = escaped(&figure.page.description);
     let mut text = String::new();
     // Writing to a String cannot fail. An image keeps the names within each SVG apart.
     let _ = write!(
@@ -130,7 +130,7 @@ fn section(
          alt=\"{alt}\" src=\"data:image/svg+xml;base64,{}\"></figure>\n{note}</section>\n",
         grouped(*step),
         escaped(&did),
-        STANDARD.encode(&figure.svg)
+        STANDARD.encode(figure.svg())
     );
     Ok(text)
 }

@@ -172,30 +172,67 @@ pub(super) fn check(targets: &[Option<&Target>], picture: Option<&Target>) -> Re
         }
     }
     if let Some(Target::File(path)) = picture {
-        is_png(path)?;
+        PictureFormat::of(path)?;
     }
     Ok(if all.contains(&&Target::StandardOutput) { Stream::Error } else { Stream::Output })
 }
 
-/// Whether a picture is written as pixels, and not as vectors, according to its extension.
-fn is_png(path: &Path) -> Result<bool, Fault> {
-    let is = |extension: &str| path.extension().is_some_and(|e| e.eq_ignore_ascii_case(extension));
-    if is("svg") || (cfg!(feature = "window") && is("png")) {
-        return Ok(is("png"));
+/// The formats of a picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum PictureFormat {
+    /// Vectors.
+    Svg,
+    /// Vectors for print.
+    Pdf,
+    /// Pixels.
+    #[cfg(feature = "window")]
+    Png,
+}
+
+impl PictureFormat {
+    /// All formats.
+    pub const ALL: &[PictureFormat] = &[
+        PictureFormat::Svg,
+        PictureFormat::Pdf,
+        #[cfg(feature = "window")]
+        PictureFormat::Png,
+    ];
+
+    /// The extension of its files.
+    pub fn extension(self) -> &'static str {
+        match self {
+            PictureFormat::Svg => "svg",
+            PictureFormat::Pdf => "pdf",
+            #[cfg(feature = "window")]
+            PictureFormat::Png => "png",
+        }
     }
-    let known = if cfg!(feature = "window") { ".svg or .png" } else { ".svg" };
-    Err(Fault::new(format!("Pictures are written as {known} files"))
-        .at(path.display().to_string())
-        .remedy("Use such an extension"))
+
+    /// The format that a path names by its extension.
+    pub fn named(path: &Path) -> Option<PictureFormat> {
+        let extension = path.extension()?;
+        PictureFormat::ALL.iter().copied().find(|format| extension.eq_ignore_ascii_case(format.extension()))
+    }
+
+    fn of(path: &Path) -> Result<PictureFormat, Fault> {
+        PictureFormat::named(path).ok_or_else(|| {
+            let known: Vec<String> =
+                PictureFormat::ALL.iter().map(|format| format!(".{}", format.extension())).collect();
+            let (last, others) = known.split_last().map_or(("", &[][..]), |(last, others)| (last.as_str(), others));
+            Fault::new(format!("Pictures are written as {} or {last} files", others.join(", ")))
+                .at(path.display().to_string())
+                .remedy("Use such an extension")
+        })
+    }
 }
 
 /// Writes a figure as vectors or pixels, according to its extension.
 pub(super) fn write_figure(target: &Target, figure: &Figure) -> Result<(), Fault> {
-    let bytes = match target {
-        #[cfg(feature = "window")]
-        Target::File(path) if is_png(path)? => figure.png()?,
-        _ => figure.svg.as_bytes().to_vec(),
+    let format = match target {
+        Target::File(path) => PictureFormat::of(path)?,
+        Target::StandardOutput => PictureFormat::Svg,
     };
+    let bytes = figure.bytes(format)?;
     target.write(|out| out.write_all(&bytes))
 }
 

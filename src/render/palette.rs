@@ -201,13 +201,28 @@ pub const LIGHT: Palette = Palette {
     charts: Rgba::hexes([0xD3E2F2, 0xE4EDC8, 0xF5E0CB, 0xDCCFF3, 0xC3E8E4, 0xF4D7DF]),
 };
 
-/// The style of a role in a figure: colours as `#RRGGBB`, widths in points.
+/// What fills an area of a figure.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Paint {
+    /// A colour.
+    Colour(Rgba),
+    /// Lines of the colour [`HATCHING`], for areas that the last step changed, without colours.
+    Hatch,
+}
+
+impl From<Rgba> for Paint {
+    fn from(colour: Rgba) -> Paint {
+        Paint::Colour(colour)
+    }
+}
+
+/// The style of a role in a figure: widths in points.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Style {
-    /// Colour of areas; `None` shows the background.
-    pub fill: Option<&'static str>,
+    /// What fills areas; `None` shows the background.
+    pub fill: Option<Paint>,
     /// Colour of lines.
-    pub stroke: Option<&'static str>,
+    pub stroke: Option<Rgba>,
     /// Width of lines in points, independent of the scale of the mesh.
     pub width: f64,
     /// The dash pattern: points drawn and points left out.
@@ -220,71 +235,84 @@ pub const THIN: f64 = 0.12;
 /// Edges of elements with a height below this many points are drawn thin, so that they do not merge.
 pub const CROWDED: f64 = 0.4;
 
-/// The fill of areas that the last step changed, without colours: the hatching that the writer defines.
-pub const HATCH: &str = "url(#hatch)";
+/// The colour of the lines of a hatched area.
+pub const HATCHING: Rgba = Rgba::hex(0x404040);
 
 /// The ground of figures, and of the plates under their labels.
-pub fn ground(ink: Ink) -> &'static str {
-    if ink == Ink::Dark { "#0C0F12" } else { "#FFFFFF" }
+pub fn ground(ink: Ink) -> Rgba {
+    if ink == Ink::Dark { Rgba::hex(0x0C0F12) } else { Rgba::hex(0xFFFFFF) }
 }
 
 /// The ink of letters and wedges in figures.
-pub fn letter(ink: Ink) -> &'static str {
-    if ink == Ink::Dark { "#E6EAEE" } else { "#000000" }
+pub fn letter(ink: Ink) -> Rgba {
+    if ink == Ink::Dark { Rgba::hex(0xE6EAEE) } else { Rgba::hex(0x000000) }
 }
 
 /// The ink of notes, axes, arcs and ellipses in figures.
-pub fn note(ink: Ink) -> &'static str {
-    if ink == Ink::Dark { "#8A939E" } else { "#404040" }
+pub fn note(ink: Ink) -> Rgba {
+    if ink == Ink::Dark { Rgba::hex(0x8A939E) } else { Rgba::hex(0x404040) }
 }
 
 /// All colours of figures in an ink: red, green, blue.
 pub fn colours(ink: Ink) -> Vec<[u8; 3]> {
     let of_roles = Role::ALL.into_iter().flat_map(|role| {
         let style = figure(role, ink);
-        [style.fill, style.stroke].into_iter().flatten()
+        let fill = match style.fill {
+            Some(Paint::Colour(colour)) => Some(colour),
+            // The hatching has a colour that a line has, too.
+            Some(Paint::Hatch) | None => None,
+        };
+        [fill, style.stroke].into_iter().flatten()
     });
     let all = [ground(ink), letter(ink), note(ink)].into_iter().chain(of_roles);
-    // The hatching has a colour that a line has, too.
-    let number = |text: &str| u32::from_str_radix(text.strip_prefix('#')?, 16).ok();
-    all.filter_map(number).map(|rgb| [16, 8, 0].map(|shift| (rgb >> shift) as u8)).collect()
+    all.map(|Rgba([r, g, b, _])| [r, g, b]).collect()
 }
 
 /// The two series of a histogram in a figure: fill and outline of its bars.
-pub fn bars(ink: Ink) -> [[&'static str; 2]; 2] {
+pub fn bars(ink: Ink) -> [[Rgba; 2]; 2] {
     match ink {
-        Ink::Grey => [["#808080", "#808080"], ["#FFFFFF", "#404040"]],
-        Ink::Colour => [["#00659C", "#00659C"], ["#FFFFFF", "#7C70DA"]],
-        Ink::Dark => [["#74CDF7", "#74CDF7"], ["#0C0F12", "#7E96F5"]],
+        Ink::Grey => [[Rgba::hex(0x808080), Rgba::hex(0x808080)], [Rgba::hex(0xFFFFFF), Rgba::hex(0x404040)]],
+        Ink::Colour => [[Rgba::hex(0x00659C), Rgba::hex(0x00659C)], [Rgba::hex(0xFFFFFF), Rgba::hex(0x7C70DA)]],
+        Ink::Dark => [[Rgba::hex(0x74CDF7), Rgba::hex(0x74CDF7)], [Rgba::hex(0x0C0F12), Rgba::hex(0x7E96F5)]],
     }
 }
 
 /// The `figure` palette. The widths are for paper, a quarter to three quarters of a point: in a column of 84 mm lines
 /// neither merge nor fade. `Weights` has the factor for other media.
 pub fn figure(role: Role, ink: Ink) -> Style {
-    let of_ink = |grey, colour, dark| match ink {
-        Ink::Grey => Some(grey),
-        Ink::Colour => Some(colour),
-        Ink::Dark => Some(dark),
+    let of_ink = |grey, colour, dark| {
+        Rgba::hex(match ink {
+            Ink::Grey => grey,
+            Ink::Colour => colour,
+            Ink::Dark => dark,
+        })
     };
-    let area = |grey, colour, dark| Style { fill: of_ink(grey, colour, dark), stroke: None, width: 0.0, dash: None };
-    let line = |grey, colour, dark, width| Style { fill: None, stroke: of_ink(grey, colour, dark), width, dash: None };
+    let filled = |paint| Style { fill: Some(paint), stroke: None, width: 0.0, dash: None };
+    let area = |grey, colour, dark| filled(Paint::Colour(of_ink(grey, colour, dark)));
+    let line = |grey, colour, dark, width| {
+        let stroke = Some(of_ink(grey, colour, dark));
+        Style { fill: None, stroke, width, dash: None }
+    };
     match role {
-        Role::LiveTriangle => area("#FFFFFF", "#FFFFFF", "#161B20"),
-        Role::DeadQuad => area("#E4E4E4", "#DBE4EC", "#22303D"),
-        Role::Changed => area(HATCH, "#A6DCCB", "#17453F"),
-        Role::LiveEdge => line("#9A9A9A", "#9A9A9A", "#465059", 0.25),
-        Role::DeadEdge => line("#6B6B6B", "#6F8496", "#566C80", 0.25),
-        Role::ChangedEdge => line("#404040", "#00806A", "#45D6B5", 0.4),
-        Role::Boundary => line("#000000", "#20262C", "#F0EADB", 0.45),
-        Role::Front(4) => line("#808080", "#6E7A87", "#8798A9", 0.4),
-        Role::Front(3) => line("#404040", "#7C70DA", "#7E96F5", 0.5),
-        Role::Front(2) => line("#404040", "#00659C", "#74CDF7", 0.5),
-        Role::Front(_) => line("#000000", "#002B45", "#CFF5FF", 0.55),
-        Role::Refused => Style { dash: Some([0.4, 1.2]), ..line("#404040", "#616A74", "#8A939E", 0.4) },
-        Role::Side => line("#000000", "#C77812", "#FFD690", 0.55),
-        Role::Top => Style { dash: Some([2.0, 1.3]), ..line("#000000", "#C77812", "#FFD690", 0.5) },
-        Role::Base => line("#000000", "#AD4E00", "#FFB01F", 0.75),
+        Role::LiveTriangle => area(0xFFFFFF, 0xFFFFFF, 0x161B20),
+        Role::DeadQuad => area(0xE4E4E4, 0xDBE4EC, 0x22303D),
+        Role::Changed => filled(match ink {
+            Ink::Grey => Paint::Hatch,
+            Ink::Colour => Paint::Colour(Rgba::hex(0xA6DCCB)),
+            Ink::Dark => Paint::Colour(Rgba::hex(0x17453F)),
+        }),
+        Role::LiveEdge => line(0x9A9A9A, 0x9A9A9A, 0x465059, 0.25),
+        Role::DeadEdge => line(0x6B6B6B, 0x6F8496, 0x566C80, 0.25),
+        Role::ChangedEdge => line(0x404040, 0x00806A, 0x45D6B5, 0.4),
+        Role::Boundary => line(0x000000, 0x20262C, 0xF0EADB, 0.45),
+        Role::Front(4) => line(0x808080, 0x6E7A87, 0x8798A9, 0.4),
+        Role::Front(3) => line(0x404040, 0x7C70DA, 0x7E96F5, 0.5),
+        Role::Front(2) => line(0x404040, 0x00659C, 0x74CDF7, 0.5),
+        Role::Front(_) => line(0x000000, 0x002B45, 0xCFF5FF, 0.55),
+        Role::Refused => Style { dash: Some([0.4, 1.2]), ..line(0x404040, 0x616A74, 0x8A939E, 0.4) },
+        Role::Side => line(0x000000, 0xC77812, 0xFFD690, 0.55),
+        Role::Top => Style { dash: Some([2.0, 1.3]), ..line(0x000000, 0xC77812, 0xFFD690, 0.5) },
+        Role::Base => line(0x000000, 0xAD4E00, 0xFFB01F, 0.75),
     }
 }
 
@@ -341,7 +369,7 @@ mod tests {
     fn the_dark_ink_of_figures_has_the_colours_of_the_dark_theme() {
         let of = |role| {
             let style = figure(role, Ink::Dark);
-            style.fill.or(style.stroke).unwrap_or_default().to_owned()
+            style.fill.or(style.stroke.map(Paint::Colour)).unwrap()
         };
         for (role, colour) in [
             (Role::LiveTriangle, DARK.live),
@@ -360,10 +388,10 @@ mod tests {
             (Role::Top, DARK.side),
             (Role::Base, DARK.base),
         ] {
-            assert_eq!(of(role), colour.to_string(), "{role:?}");
+            assert_eq!(of(role), Paint::Colour(colour), "{role:?}");
         }
         let inks = [ground(Ink::Dark), letter(Ink::Dark), note(Ink::Dark)];
-        assert_eq!(inks, [DARK.ground, DARK.label, DARK.weak].map(|colour| colour.to_string()));
+        assert_eq!(inks, [DARK.ground, DARK.label, DARK.weak]);
         assert!(colours(Ink::Dark).contains(&[0xFF, 0xB0, 0x1F]) && colours(Ink::Grey).contains(&[0x40; 3]));
     }
 

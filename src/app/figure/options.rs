@@ -9,7 +9,7 @@ use crate::core::fault::Fault;
 use crate::core::run::Shown;
 use crate::render::camera::Bearing;
 use crate::render::look::{FigurePart, HiddenLines, Ink, Layer, Layers, Look};
-use crate::render::vector::svg::{COLUMN, Caption, MILLIMETRE, PAGE, Sheet};
+use crate::render::vector::sheet::{COLUMN, Caption, MILLIMETRE, PAGE, Sheet};
 use crate::render::vector::weights::{NOTE, Weights};
 
 /// Dots per inch of line art in print, and of screens.

@@ -3,7 +3,8 @@
 use std::path::Path;
 
 use crate::app::convert::describe;
-use crate::app::output::{self, Stream, Target};
+use crate::app::figure::Figure as Drawn;
+use crate::app::output::{self, PictureFormat, Stream, Target};
 use crate::core::case::Case;
 use crate::core::fault::Fault;
 use crate::core::formats::save::load;
@@ -11,34 +12,29 @@ use crate::core::record::report::figures::Figure;
 use crate::core::record::sweep::Sweep;
 use crate::render::vector::heat_map;
 
-/// Dots per inch of a PNG.
-#[cfg(feature = "window")]
-const DPI: f64 = 300.0;
-
 /// The format of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
-    Svg,
-    #[cfg(feature = "window")]
-    Png,
+    Picture(PictureFormat),
     Csv,
     Json,
 }
 
 impl Kind {
     fn of(path: &Path) -> Result<Kind, Fault> {
+        if let Some(format) = PictureFormat::named(path) {
+            return Ok(Kind::Picture(format));
+        }
         let extension = path.extension().unwrap_or_default().to_ascii_lowercase();
         match extension.to_str() {
-            Some("svg") => Ok(Kind::Svg),
-            #[cfg(feature = "window")]
-            Some("png") => Ok(Kind::Png),
             Some("csv") => Ok(Kind::Csv),
             Some("json") => Ok(Kind::Json),
             _ => {
-                let known = if cfg!(feature = "window") { ".svg, .png, .csv or .json" } else { ".svg, .csv or .json" };
+                let known: String =
+                    PictureFormat::ALL.iter().map(|format| format!(".{}, ", format.extension())).collect();
                 Err(Fault::new("A sweep is not written in this format")
                     .at(path.display().to_string())
-                    .remedy(format!("Name a file that ends in {known}")))
+                    .remedy(format!("Name a file that ends in {known}.csv or .json")))
             }
         }
     }
@@ -111,12 +107,9 @@ impl Outputs {
     pub fn write(&self, case: &Case, sweep: &Sweep, look: SweepLook<'_>) -> Result<(), Fault> {
         for (target, kind) in &self.0 {
             let bytes = match kind {
-                Kind::Svg => picture(case, sweep, look).0.into_bytes(),
-                #[cfg(feature = "window")]
-                Kind::Png => {
-                    use crate::render::vector::png;
-                    let (svg, description) = picture(case, sweep, look);
-                    png::write(&svg, DPI, png::Carried { description: &description, run: None })?
+                Kind::Picture(format) => {
+                    let map = heat_map::draw(sweep, look.figure, &describe(case));
+                    Drawn::of_page(map).bytes(*format)?
                 }
                 Kind::Csv => sweep.csv(look.with_time).into_bytes(),
                 Kind::Json => sweep.json().into_bytes(),
@@ -125,12 +118,6 @@ impl Outputs {
         }
         Ok(())
     }
-}
-
-/// The heat map as SVG, and its description.
-fn picture(case: &Case, sweep: &Sweep, look: SweepLook<'_>) -> (String, String) {
-    let description = describe(case);
-    (heat_map::write(sweep, look.figure, &description), description)
 }
 
 /// What a file had for a sweep.

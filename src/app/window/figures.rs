@@ -15,6 +15,7 @@ use crate::core::kernel::worded::worded;
 
 use crate::app::figure::{self, Figure, FigureOptions, LayerWords, PartWords, Size, Wanted};
 use crate::app::notes;
+use crate::app::output::PictureFormat;
 use crate::app::work::{self, FigureFrame};
 use crate::core::convert::Stop;
 use crate::core::fault::Fault;
@@ -38,18 +39,21 @@ worded! {
         Svg = "SVG",
         /// Pixels drawn from them.
         Png = "PNG",
+        /// Vectors for print.
+        Pdf = "PDF",
         /// Both.
         Both = "SVG and PNG",
     }
 }
 
 impl Formats {
-    /// The extensions of its files.
-    fn extensions(self) -> &'static [&'static str] {
+    /// The formats of its files.
+    fn files(self) -> &'static [PictureFormat] {
         match self {
-            Formats::Svg => &["svg"],
-            Formats::Png => &["png"],
-            Formats::Both => &["svg", "png"],
+            Formats::Svg => &[PictureFormat::Svg],
+            Formats::Png => &[PictureFormat::Png],
+            Formats::Pdf => &[PictureFormat::Pdf],
+            Formats::Both => &[PictureFormat::Svg, PictureFormat::Png],
         }
     }
 }
@@ -227,7 +231,7 @@ pub fn preview(state: &State, most: [f32; 2]) -> Result<Option<Receiver<Result<C
     let make = maker(state)?;
     Ok(make.map(|make| {
         files::work(state.wake(), move || {
-            let ([width, height], pixels) = png::fitted(&make()?.svg, most)?;
+            let ([width, height], pixels) = png::fitted(&make()?.svg(), most)?;
             Ok(ColorImage::from_rgba_unmultiplied([width as usize, height as usize], &pixels))
         })
     }))
@@ -236,7 +240,7 @@ pub fn preview(state: &State, most: [f32; 2]) -> Result<Option<Receiver<Result<C
 /// The files that are written next.
 pub fn names(state: &State, formats: Formats) -> Vec<PathBuf> {
     let stem = stem(state);
-    formats.extensions().iter().map(|extension| free_path(&stem, extension)).collect()
+    formats.files().iter().map(|format| free_path(&stem, format.extension())).collect()
 }
 
 /// The path of the figure without its extension.
@@ -364,11 +368,8 @@ fn write(figure: &Figure, stem: &str, formats: Formats) -> Result<String, Fault>
         names.push(path.display().to_string());
         save::save(&path, |out| out.write_all(bytes))
     };
-    if formats != Formats::Png {
-        keep("svg", figure.svg.as_bytes())?;
-    }
-    if formats != Formats::Svg {
-        keep("png", &figure.png()?)?;
+    for format in formats.files() {
+        keep(format.extension(), &figure.bytes(*format)?)?;
     }
     Ok(format!("The figure was saved as {}.", names.join(" and ")))
 }

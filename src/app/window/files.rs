@@ -15,7 +15,7 @@ use crate::app::input;
 use crate::core::case::built_in;
 use crate::core::fault::Fault;
 use crate::core::formats::{Format, save};
-use crate::core::record::figure::KEYWORD;
+use crate::core::record::figure::{self, KEYWORD};
 
 /// How often the watcher looks at its file.
 const LOOK: Duration = Duration::from_millis(700);
@@ -82,7 +82,7 @@ pub fn answers<T>(waiting: &mut Vec<Receiver<T>>) -> Vec<T> {
 /// Extensions of files that can be opened.
 fn extensions() -> Vec<&'static str> {
     let meshes = Format::ALL.into_iter().map(Format::extension);
-    ["toml", "svg", "png", "md"].into_iter().chain(meshes).collect()
+    ["toml", "md"].into_iter().chain(figure::EXTENSIONS).chain(meshes).collect()
 }
 
 /// The system's file dialog, on a thread of its own: it may hang if the desktop has no portal.

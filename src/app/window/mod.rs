@@ -43,7 +43,6 @@ use crate::core::question::Series;
 pub use crate::app::command_line::Overrides;
 pub use app::App;
 pub use command::{Command, Rules};
-pub use equation::{Typeset, equation};
 pub use graphics::Lost;
 pub use import::Gesture;
 pub use lists::ListKind;

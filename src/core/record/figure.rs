@@ -1,5 +1,7 @@
-//! Runs embedded in figures: writes and reads the text of a run file in the `<metadata>` of an SVG or in an iTXt chunk
-//! of a PNG. The rest of the file is ignored.
+//! Runs embedded in figures: the text of a run file in the `<metadata>` of an SVG, in an iTXt chunk of a PNG, or in a
+//! file attached to a PDF. The rest of the file is ignored.
+
+mod pdf;
 
 use std::path::Path;
 
@@ -10,6 +12,12 @@ use crate::core::run::Run;
 
 /// The keyword of the chunk in a PNG.
 pub const KEYWORD: &str = "quadfront run";
+/// The name of the file attached to a PDF.
+pub const ATTACHED: &str = "quadfront-run.toml";
+/// Its type.
+pub const ATTACHED_TYPE: &str = "application/x-quadfront-run";
+/// The extensions of figures.
+pub const EXTENSIONS: [&str; 3] = ["svg", "png", "pdf"];
 /// The element in an SVG.
 const ELEMENT: &str = "quadfront:run";
 /// Maximum length of a run in bytes: cases are small, and meshes are stored as paths.
@@ -20,7 +28,7 @@ const SIGNATURE: [u8; 8] = *b"\x89PNG\r\n\x1a\n";
 
 /// Whether a path is a figure, by its extension.
 pub fn is_figure(path: &Path) -> bool {
-    path.extension().is_some_and(|e| e.eq_ignore_ascii_case("svg") || e.eq_ignore_ascii_case("png"))
+    path.extension().is_some_and(|e| EXTENSIONS.iter().any(|extension| e.eq_ignore_ascii_case(extension)))
 }
 
 /// The run embedded in a figure; its `shown` lists the states in the figure.
@@ -45,21 +53,26 @@ fn run_in(path: &Path) -> Result<Run, Fault> {
     Ok(run)
 }
 
-/// The text of the run in the bytes of an SVG or a PNG.
+/// The text of the run in the bytes of an SVG, a PNG or a PDF.
 ///
 /// # Errors
 /// Bytes without a run, truncated or damaged.
 pub fn text_in(bytes: &[u8]) -> Result<String, Fault> {
-    let text = if bytes.starts_with(&SIGNATURE) { in_png(bytes)? } else { in_svg(bytes)? };
-    if text.len() > LONGEST {
-        return Err(Fault::new("The run in the figure is too long"));
-    }
-    Ok(text)
+    let text = match bytes {
+        _ if bytes.starts_with(&SIGNATURE) => in_png(bytes)?,
+        _ if bytes.starts_with(pdf::SIGNATURE) => pdf::text_in(bytes)?,
+        _ => in_svg(bytes)?,
+    };
+    if text.len() > LONGEST { Err(too_long()) } else { Ok(text) }
 }
 
 fn nothing() -> Fault {
     Fault::new("This figure contains no run")
         .remedy("It was not drawn by quadfront from a case, or another program has removed its metadata")
+}
+
+fn too_long() -> Fault {
+    Fault::new("The run in the figure is too long")
 }
 
 fn damaged() -> Fault {
@@ -75,7 +88,7 @@ fn in_svg(bytes: &[u8]) -> Result<String, Fault> {
     let rest = &rest[open + 1..];
     let end = find(rest, format!("</{ELEMENT}").as_bytes()).ok_or_else(damaged)?;
     if end > 6 * LONGEST {
-        return Err(Fault::new("The run in the figure is too long"));
+        return Err(too_long());
     }
     let text = std::str::from_utf8(&rest[..end]).map_err(|_| damaged())?;
     unescaped(text).ok_or_else(damaged)

@@ -4,15 +4,15 @@ use std::fmt::Write;
 
 use glam::DVec2;
 
-use super::svg::page::{Page, Path, width};
-use super::svg::{COLUMN, PAGE, Sheet};
+use super::page::{Anchor, Coat, Page, Path, Stroke, width};
+use super::sheet::{COLUMN, PAGE, Sheet};
 use super::weights::{LABEL, NOTE};
 use crate::core::kernel::number::{counted, fixed, grouped};
 use crate::core::record::report::figures::{Better, Figure};
 use crate::core::record::sweep::{Axis, Cell, Sweep};
 use crate::render::colour_map::ColourMap;
 use crate::render::look::{Ink, Look};
-use crate::render::palette::{HATCH, Rgba, letter, note};
+use crate::render::palette::{Paint, Rgba, letter, note};
 
 /// The ink of axes and marks.
 const INK: Ink = Ink::Colour;
@@ -108,8 +108,8 @@ pub fn meaning(figure: &Figure) -> String {
     }
 }
 
-/// Writes the heat map of a figure as an SVG file; `description` says what it was made of.
-pub fn write(sweep: &Sweep, figure: &Figure, description: &str) -> String {
+/// Draws the heat map of a figure; `description` says what it was made of.
+pub fn draw(sweep: &Sweep, figure: &Figure, description: &str) -> Page {
     let map = HeatMap::of(sweep, figure);
     let unit = if figure.unit.is_empty() { String::new() } else { format!(" ({})", figure.unit) };
     let heading = format!("{}: {}{unit}", sweep.case.name, figure.name);
@@ -122,9 +122,9 @@ pub fn write(sweep: &Sweep, figure: &Figure, description: &str) -> String {
     let sheet = Sheet { width, ..Sheet::column(&title, description, Look::default()) };
     let below = LINE * legend.len() as f64;
     let height = map.corner.y + map.cell.y * map.shape[1] as f64 + BELOW + below;
-    let mut page = Page::new(&sheet, height, true);
-    page.text(DVec2::new(MARGIN, 1.2 * LABEL), LABEL, "start", &heading);
-    page.text(DVec2::new(MARGIN, 1.2 * LABEL + 1.4 * NOTE), NOTE, "start", &meaning);
+    let mut page = Page::new(&sheet, height);
+    page.text(DVec2::new(MARGIN, 1.2 * LABEL), LABEL, Anchor::Start, &heading);
+    page.text(DVec2::new(MARGIN, 1.2 * LABEL + 1.4 * NOTE), NOTE, Anchor::Start, &meaning);
     map.cells(&mut page);
     map.axes(&mut page);
     map.scale_of_colours(&mut page);
@@ -132,7 +132,7 @@ pub fn write(sweep: &Sweep, figure: &Figure, description: &str) -> String {
     for (k, (mark, text)) in legend.iter().enumerate() {
         legend_line(&mut page, first + DVec2::new(0.0, LINE * k as f64), *mark, text);
     }
-    page.finish()
+    page
 }
 
 /// The marks of the legend.
@@ -196,21 +196,19 @@ impl<'a> HeatMap<'a> {
             let area = self.place(k);
             let name = self.sweep.name(k);
             // White lines between the cells, where there is room for them.
-            let line = if self.cell.min_element() > 4.0 { " stroke=\"#FFFFFF\" stroke-width=\"0.3\"" } else { "" };
+            let line = (self.cell.min_element() > 4.0).then(|| Stroke::of(WHITE, 0.3));
+            let filled = |paint: Paint| Coat { stroke: line, ..Coat::area(paint) };
             let value = self.sweep.value(k, self.figure);
             match (cell, self.scale.zip(value)) {
                 (_, Some((scale, value))) => {
                     let text = scale.text_with_unit(value, self.figure);
-                    let style = format!("fill=\"{}\"{line}", scale.colour(value));
-                    page.bar_that_says(area, &style, &format!("{name}: {text}"));
+                    page.bar_that_says(area, filled(scale.colour(value).into()), &format!("{name}: {text}"));
                 }
                 (Some(Cell::Refused(why)), _) => {
-                    page.define_hatch();
-                    let style = format!("fill=\"{HATCH}\"{line}");
-                    page.bar_that_says(area, &style, &format!("{name}: refused. {why}"));
+                    page.bar_that_says(area, filled(Paint::Hatch), &format!("{name}: refused. {why}"));
                 }
-                (Some(Cell::Figures(_)), _) => page.bar_that_says(area, EMPTY, &format!("{name}: none")),
-                (None, _) => page.bar_that_says(area, EMPTY, &format!("{name}: not computed")),
+                (Some(Cell::Figures(_)), _) => page.bar_that_says(area, empty(), &format!("{name}: none")),
+                (None, _) => page.bar_that_says(area, empty(), &format!("{name}: not computed")),
             }
         }
         if let Some(own) = self.sweep.own() {
@@ -224,7 +222,7 @@ impl<'a> HeatMap<'a> {
             let [low, high] = self.place(k);
             if let Some((scale, value)) = self.scale.zip(self.sweep.value(k, self.figure)) {
                 let at = 0.5 * (low + high) + DVec2::new(0.0, 0.35 * NOTE);
-                page.text_in(at, NOTE, "middle", &scale.ink(value).to_string(), &scale.text(value));
+                page.text_in(at, NOTE, Anchor::Middle, scale.ink(value), &scale.text(value));
             }
         }
     }
@@ -237,19 +235,19 @@ impl<'a> HeatMap<'a> {
         for k in (0..axis.values.len()).step_by(thinned(room, self.cell.x)) {
             let at = DVec2::new(self.corner.x + self.cell.x * (k as f64 + 0.5), end.y);
             ticks.walk([at, at + DVec2::new(0.0, 2.0)].into_iter(), false);
-            page.text(at + DVec2::new(0.0, 2.5 + NOTE), NOTE, "middle", &axis.values[k]);
+            page.text(at + DVec2::new(0.0, 2.5 + NOTE), NOTE, Anchor::Middle, &axis.values[k]);
         }
         let middle = 0.5 * (self.corner + end);
-        page.text(DVec2::new(middle.x, end.y + 5.0 + NOTE + LABEL), LABEL, "middle", &heading(axis));
+        page.text(DVec2::new(middle.x, end.y + 5.0 + NOTE + LABEL), LABEL, Anchor::Middle, &heading(axis));
         if let Some(axis) = self.sweep.axes().get(1) {
             for k in (0..axis.values.len()).step_by(thinned(NOTE + 1.0, self.cell.y)) {
                 let at = DVec2::new(self.corner.x, end.y - self.cell.y * (k as f64 + 0.5));
                 ticks.walk([at, at - DVec2::new(2.0, 0.0)].into_iter(), false);
-                page.text(at + DVec2::new(-3.0, 0.35 * NOTE), NOTE, "end", &axis.values[k]);
+                page.text(at + DVec2::new(-3.0, 0.35 * NOTE), NOTE, Anchor::End, &axis.values[k]);
             }
             page.upright_text(DVec2::new(1.1 * LABEL, middle.y), LABEL, &heading(axis));
         }
-        page.path(&ticks, &format!("fill=\"none\" stroke=\"{}\" stroke-width=\"0.5\"", letter(INK)));
+        page.path(ticks, Coat::line(Stroke::of(letter(INK), 0.5)));
     }
 
     fn scale_of_colours(&self, page: &mut Page) {
@@ -264,12 +262,12 @@ impl<'a> HeatMap<'a> {
             let area = [DVec2::new(x, at(to)), DVec2::new(x + BAR, at(from))];
             let colour = scale.colour(low + (high - low) * 0.5 * (from + to));
             // An outline of the same colour closes the seams between the steps.
-            page.bar(area, &format!("fill=\"{colour}\" stroke=\"{colour}\" stroke-width=\"0.1\""));
+            page.bar(area, Coat::area(colour).outlined(Stroke::of(colour, 0.1)));
         }
         let ends = if high > low { vec![(high, 0.8 * NOTE), (low, 0.0)] } else { vec![(low, 0.8 * NOTE)] };
         for (value, below) in ends {
             let share = if high > low { (value - low) / (high - low) } else { 1.0 };
-            page.text(DVec2::new(x + BAR + 3.0, at(share) + below), NOTE, "start", &scale.text(value));
+            page.text(DVec2::new(x + BAR + 3.0, at(share) + below), NOTE, Anchor::Start, &scale.text(value));
         }
     }
 
@@ -313,15 +311,17 @@ fn legend_line(page: &mut Page, at: DVec2, mark: Mark, text: &str) {
     match mark {
         Mark::Best => best_mark(page, area),
         Mark::Own => own_mark(page, area[0], HEIGHT),
-        Mark::Refused => page.bar(area, &format!("fill=\"{HATCH}\"")),
-        Mark::Empty => page.bar(area, EMPTY),
+        Mark::Refused => page.bar(area, Coat::area(Paint::Hatch)),
+        Mark::Empty => page.bar(area, empty()),
         Mark::None => {}
     }
-    page.text(at + DVec2::new(AFTER_MARK, 0.35 * NOTE), NOTE, "start", text);
+    page.text(at + DVec2::new(AFTER_MARK, 0.35 * NOTE), NOTE, Anchor::Start, text);
 }
 
-/// The style of a cell without a value.
-const EMPTY: &str = "fill=\"none\" stroke=\"#B0B0B0\" stroke-width=\"0.3\" stroke-dasharray=\"1 1\"";
+/// The outline of a cell without a value.
+fn empty() -> Coat {
+    Coat::line(Stroke { dash: Some([1.0, 1.0]), ..Stroke::of(Rgba([0xB0, 0xB0, 0xB0, 0xFF]), 0.3) })
+}
 
 /// The name of an axis with its unit.
 fn heading(axis: &Axis) -> String {
@@ -340,10 +340,9 @@ fn thinned(room: f64, cell: f64) -> usize {
 
 /// The outline of the best cells, seen on dark and on light colours.
 fn best_mark(page: &mut Page, [low, high]: [DVec2; 2]) {
-    for (inset, ink, width) in [(1.3, "#FFFFFF", 0.7), (0.5, letter(INK), 1.1)] {
+    for (inset, ink, width) in [(1.3, WHITE, 0.7), (0.5, letter(INK), 1.1)] {
         let inset = DVec2::splat(inset).min(0.3 * (high - low));
-        let style = format!("fill=\"none\" stroke=\"{ink}\" stroke-width=\"{width}\"");
-        page.bar([low + inset, high - inset], &style);
+        page.bar([low + inset, high - inset], Coat::line(Stroke::of(ink, width)));
     }
 }
 
@@ -352,7 +351,7 @@ fn own_mark(page: &mut Page, corner: DVec2, size: f64) {
     let side = 0.35 * size;
     let mut path = Path::default();
     path.walk([corner, corner + DVec2::new(side, 0.0), corner + DVec2::new(0.0, side)].into_iter(), true);
-    page.path(&path, &format!("fill=\"#FFFFFF\" stroke=\"{}\" stroke-width=\"0.4\"", note(INK)));
+    page.path(path, Coat::area(WHITE).outlined(Stroke::of(note(INK), 0.4)));
 }
 
 #[cfg(test)]
@@ -361,6 +360,7 @@ mod tests {
     use crate::core::case::built_in;
     use crate::core::record::report::figures::FIGURES;
     use crate::core::run::Run;
+    use crate::render::vector::svg;
 
     /// A sweep of example 1 in which cell k has the figures k + 0.5, and the last cell is not known.
     fn sweep(axes: &[&str]) -> Sweep {
@@ -406,7 +406,7 @@ mod tests {
     #[test]
     fn the_best_cell_is_the_least_or_the_largest_and_rows_grow_upward() {
         let sweep = sweep(&["c=2,3", "theta_rect=120,135,150"]);
-        let map = |name| write(&sweep, figure(name), "");
+        let map = |name| svg::write(&draw(&sweep, figure(name), ""));
         let (less, more, neither) = (map("irregular"), map("min_angle"), map("quads"));
         assert!(less.contains(">best: 0.50 % at c = 2, theta_rect = 120°</text>"), "{less}");
         assert!(more.contains(">best: 4.50° at c = 2, theta_rect = 150°</text>"), "{more}");
@@ -425,7 +425,7 @@ mod tests {
         {
             let mut sweep = sweep(axes);
             sweep.fill(0, Cell::Refused("<no>".to_owned()));
-            let svg = write(&sweep, figure("quads"), "a & b");
+            let svg = svg::write(&draw(&sweep, figure("quads"), "a & b"));
             let drawn = svg.split("</style>").last().unwrap();
             assert!(!drawn.contains("NaN") && !drawn.contains("inf") && drawn.contains("&lt;no&gt;"), "{drawn}");
             let map = HeatMap::of(&sweep, figure("quads"));

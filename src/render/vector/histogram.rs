@@ -2,8 +2,8 @@
 
 use glam::DVec2;
 
-use super::svg::Sheet;
-use super::svg::page::{Page, Path, Short, width};
+use super::page::{Anchor, Coat, Page, Path, Stroke, width};
+use super::sheet::Sheet;
 use super::weights::Weights;
 use crate::core::kernel::number::{fixed, grouped};
 use crate::core::record::Statistics;
@@ -79,11 +79,11 @@ impl Histogram {
         }
     }
 
-    /// The histogram as an SVG file.
-    pub fn write(&self, sheet: &Sheet<'_>) -> String {
+    /// Draws the histogram.
+    pub fn draw(&self, sheet: &Sheet<'_>) -> Page {
         let height = sheet.height.unwrap_or(SHAPE * sheet.width);
         let (note, text) = (sheet.weights.note(), sheet.weights.text);
-        let mut page = Page::new(sheet, height, true);
+        let mut page = Page::new(sheet, height);
         let most = self.series.iter().flat_map(|s| &s.1).copied().max().unwrap_or(0).max(1);
         let most = (self.height(most).ceil() as u64).max(1);
         let step = step(most);
@@ -94,10 +94,10 @@ impl Histogram {
             range: self.range,
             top: top as f64,
         };
-        page.text(DVec2::new(plot.high.x, note), note, "end", self.note_within(plot.high.x, note));
+        page.text(DVec2::new(plot.high.x, note), note, Anchor::End, self.note_within(plot.high.x, note));
         self.bars(&mut page, &plot, sheet);
         self.axes(&mut page, &plot, sheet.look.ink, step, top);
-        page.finish()
+        page
     }
 
     /// The height of a bar in units of the vertical axis.
@@ -125,7 +125,10 @@ impl Histogram {
     fn bars(&self, page: &mut Page, plot: &Plot, sheet: &Sheet<'_>) {
         let styles = bars(sheet.look.ink);
         let (note, Weights { line, text }) = (sheet.weights.note(), sheet.weights);
-        let outline = Short(0.4 * line);
+        let coat = |i: usize| {
+            let [fill, stroke] = styles[i.min(1)];
+            Coat::area(fill).outlined(Stroke::of(stroke, 0.4 * line))
+        };
         let count = self.series.len() as f64;
         let mut taken = f64::NEG_INFINITY;
         let classes = self.series.first().map_or(0, |s| s.1.len());
@@ -135,11 +138,10 @@ impl Histogram {
             for (i, (_, counts)) in self.series.iter().enumerate().filter(|s| s.1.1[k] > 0) {
                 let share = |part: f64| self.range[0] + class * (k as f64 + 0.08 + 0.84 * (i as f64 + part) / count);
                 let (low, high) = (plot.at(share(0.0), 0.0), plot.at(share(1.0), self.height(counts[k])));
-                let [fill, stroke] = styles[i.min(1)];
                 // The outline lies inside the bar.
                 let inset = DVec2::new(0.2 * line, 0.0);
                 let area = [DVec2::new(low.x, high.y) + inset, DVec2::new(high.x, low.y) - inset];
-                page.bar(area, &format!("fill=\"{fill}\" stroke=\"{stroke}\" stroke-width=\"{outline}\""));
+                page.bar(area, coat(i));
                 if counts[k] < FEW {
                     numbers.push((DVec2::new(0.5 * (low.x + high.x), high.y - 1.5 * text), counts[k].to_string()));
                 }
@@ -148,18 +150,16 @@ impl Histogram {
         for (at, number) in numbers {
             let half = 0.5 * width(&number, note);
             if at.x - half > taken {
-                page.text(at, note, "middle", &number);
+                page.text(at, note, Anchor::Middle, &number);
                 taken = at.x + half + 0.3 * text;
             }
         }
         if self.series.len() > 1 {
             let mut x = plot.low.x + 6.0 * text;
             for (i, (name, _)) in self.series.iter().enumerate() {
-                let [fill, stroke] = styles[i.min(1)];
                 let box_at = DVec2::new(x, plot.high.y + 2.0 * text);
-                let style = format!("fill=\"{fill}\" stroke=\"{stroke}\" stroke-width=\"{outline}\"");
-                page.bar([box_at, box_at + DVec2::new(5.0, 4.0) * text], &style);
-                page.text(box_at + DVec2::new(7.0, 4.2) * text, note, "start", name);
+                page.bar([box_at, box_at + DVec2::new(5.0, 4.0) * text], coat(i));
+                page.text(box_at + DVec2::new(7.0, 4.2) * text, note, Anchor::Start, name);
                 x += 15.0 * text + width(name, note);
             }
         }
@@ -174,7 +174,7 @@ impl Histogram {
         for k in 0..=(top / step) {
             let at = plot.at(self.range[0], (k * step) as f64);
             path.walk([at, at - DVec2::new(2.0 * text, 0.0)].into_iter(), false);
-            numbers.push((at + DVec2::new(-3.5 * text, 0.35 * note), "end", self.number(k * step, step)));
+            numbers.push((at + DVec2::new(-3.5 * text, 0.35 * note), Anchor::End, self.number(k * step, step)));
         }
         let (tick, decimals) = self.tick;
         let mut taken = f64::NEG_INFINITY;
@@ -188,16 +188,15 @@ impl Histogram {
             // Where the text is large, every other number has no room, or more of them.
             if at.x - half > taken {
                 taken = at.x + half + 1.0 * text;
-                numbers.push((at + DVec2::new(0.0, 3.0 * text + 0.8 * note), "middle", number));
+                numbers.push((at + DVec2::new(0.0, 3.0 * text + 0.8 * note), Anchor::Middle, number));
             }
         }
-        let (ink, width) = (letter(ink), Short(0.5 * line));
-        page.path(&path, &format!("fill=\"none\" stroke=\"{ink}\" stroke-width=\"{width}\""));
+        page.path(path, Coat::line(Stroke::of(letter(ink), 0.5 * line)));
         for (at, anchor, number) in numbers {
             page.text(at, note, anchor, &number);
         }
         let below = DVec2::new(0.5 * (plot.low.x + plot.high.x), plot.low.y + BELOW * text - 0.35 * label);
-        page.text(below, label, "middle", &self.axes[0]);
+        page.text(below, label, Anchor::Middle, &self.axes[0]);
         page.upright_text(DVec2::new(label, 0.5 * (plot.low.y + plot.high.y)), label, &self.axes[1]);
     }
 }

@@ -5,7 +5,7 @@ use std::sync::{Arc, LazyLock};
 use resvg::tiny_skia::{Pixmap, Transform};
 use resvg::usvg::{Options, Tree, fontdb};
 
-use super::svg::page::{FAMILY, FONT};
+use super::page::{FAMILY, FONT};
 use crate::core::fault::Fault;
 use crate::core::record::figure::KEYWORD;
 

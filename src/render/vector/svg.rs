@@ -1,230 +1,194 @@
-//! SVG: vector paths, widths in points, text in an embedded font, the same bytes for the same picture.
+//! SVG: vector paths, widths in points, text in an embedded font, the same bytes for the same page.
 
-mod caption;
-mod frame;
-mod marks;
-pub(super) mod page;
+use std::fmt::Write;
 
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
 use glam::DVec2;
 
-pub use self::caption::Caption;
+use super::page::{Anchor, Cap, Coat, FAMILY, FONT, Item, Page, Path, Stroke, Text, rounded};
+use crate::core::record::figure;
+use crate::render::palette::{HATCHING, Paint};
 
-use self::frame::SvgFrame;
-use self::marks::Marks;
-use self::page::{Page, Path, Short};
-use super::weights::Weights;
-use crate::render::look::{FigurePart, Layer, Look};
-use crate::render::palette::{CROWDED, HATCH, THIN, figure};
-use crate::render::picture::{Line, Picture, Role};
-
-/// Points per millimetre.
-pub const MILLIMETRE: f64 = 72.0 / 25.4;
-
-/// The width of a figure in one column of a page, in points.
-pub const COLUMN: f64 = 84.0 * MILLIMETRE;
-
-/// The width of a figure across the page, in points.
-pub const PAGE: f64 = 174.0 * MILLIMETRE;
-
-/// The gap between the frames of a strip, in points.
-const GAP: f64 = 3.0 * MILLIMETRE;
-
-/// Default number of frames side by side.
-const COLUMNS: usize = 4;
-/// A frame narrower than this on paper has no room for caption and scale bar in one row.
-const NARROW: f64 = 95.0;
-
-/// The page of a picture.
-#[derive(Clone, Copy)]
-pub struct Sheet<'a> {
-    /// One line on what it shows.
-    pub title: &'a str,
-    /// A longer description.
-    pub description: &'a str,
-    /// The text of the embedded run.
-    pub run: Option<&'a str>,
-    /// Width in points.
-    pub width: f64,
-    /// Height in points; by default it follows from equal scales along both axes.
-    pub height: Option<f64>,
-    /// Its look.
-    pub look: Look,
-    /// Number of frames of a strip side by side.
-    pub columns: Option<usize>,
-    /// The weights of its medium.
-    pub weights: Weights,
-    /// The box that is fitted to the page; `None`: that of the picture.
-    pub extent: Option<[DVec2; 2]>,
-    /// The caption of a single picture.
-    pub caption: Option<Caption<'a>>,
+/// Writes a page as an SVG file. It brings its font along where it has text.
+pub fn write(page: &Page) -> String {
+    let [w, h] = page.size.to_array().map(Short);
+    let mut svg = format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{w}pt\" height=\"{h}pt\" viewBox=\"0 0 {w} {h}\">\n\
+         <title>{}</title>\n<desc>{}</desc>\n",
+        escaped(&page.title),
+        escaped(&page.description)
+    );
+    if let Some(run) = &page.run {
+        svg.push_str(&figure::metadata(run));
+    }
+    if page.items.iter().any(|item| matches!(item, Item::Text(_))) {
+        let font = STANDARD.encode(FONT);
+        // Writing to a String cannot fail.
+        let _ =
+            writeln!(svg, "<style>@font-face{{font-family:\"{FAMILY}\";src:url(data:font/ttf;base64,{font})}}</style>");
+    }
+    if let Some(ground) = page.ground {
+        let _ = writeln!(svg, "<rect width=\"{w}\" height=\"{h}\" fill=\"{ground}\"/>");
+    }
+    let mut writer = Writer { svg, page, hatched: false, clips: 0 };
+    page.items.iter().for_each(|item| writer.item(item));
+    writer.svg.push_str("</svg>\n");
+    writer.svg
 }
 
-impl<'a> Sheet<'a> {
-    /// A sheet as wide as a column.
-    pub fn column(title: &'a str, description: &'a str, look: Look) -> Sheet<'a> {
-        let (run, height, columns, extent, caption) = (None, None, None, None, None);
-        let weights = Weights::PAPER;
-        Sheet { title, description, run, width: COLUMN, height, look, columns, weights, extent, caption }
-    }
+struct Writer<'a> {
+    svg: String,
+    page: &'a Page,
+    /// Whether the hatching is defined.
+    hatched: bool,
+    clips: usize,
 }
 
-/// Writes one picture as an SVG file.
-pub fn write(picture: &Picture, sheet: &Sheet<'_>) -> String {
-    let (look, weights) = (&sheet.look, &sheet.weights);
-    // The scale bar has its own row below the picture, and the caption has its rows below that.
-    let bar = if look.layers.has(Layer::Scale) { 1.7 * weights.label() } else { 0.0 };
-    let below = bar + sheet.caption.map_or(0.0, |caption| caption.height(sheet.width));
-    let part = look.part.map(|part| part_bounds(part, sheet.width, sheet.height));
-    let bounds = part.or(sheet.extent).or_else(|| picture.bounds());
-    let frame = SvgFrame::fit(bounds, sheet.width, sheet.height.map(|h| h - below), sheet);
-    let has_text = uses_text(std::slice::from_ref(picture), look, sheet.caption.is_some());
-    let mut page = Page::new(sheet, frame.size.y + below, has_text);
-    draw(&mut page, picture, &frame, look, 0);
-    if bar > 0.0 {
-        scale_bar(&mut page, &frame, DVec2::new(frame.size.x - 1.0, frame.size.y + weights.label()), look);
-    }
-    if let Some(caption) = sheet.caption {
-        caption.write(&mut page, sheet.width, frame.size.y + bar);
-    }
-    page.finish()
-}
-
-/// Writes pictures side by side in equal frames of the same scale, each with a letter and its title below, and one
-/// scale bar for all.
-pub fn strip(pictures: &[Picture], sheet: &Sheet<'_>) -> String {
-    let (look, label) = (&sheet.look, sheet.weights.label());
-    let count = pictures.len().max(1);
-    let rows = count.div_ceil(sheet.columns.unwrap_or(COLUMNS).clamp(1, count));
-    let columns = count.div_ceil(rows);
-    let each = (sheet.width - GAP * (columns - 1) as f64) / columns as f64;
-    let caption = 1.9 * label;
-    let has_bar = look.layers.has(Layer::Scale);
-    let is_narrow = each < NARROW * sheet.weights.text;
-    let own_row = if has_bar && is_narrow && count == rows * columns { 1.5 * label } else { 0.0 };
-    let inner = sheet.height.map(|h| (h - own_row - GAP * (rows - 1) as f64) / rows as f64 - caption);
-    let union = |a: [DVec2; 2], b: [DVec2; 2]| [a[0].min(b[0]), a[1].max(b[1])];
-    let part = look.part.map(|part| part_bounds(part, each, inner));
-    let all = part.or_else(|| pictures.iter().filter_map(Picture::bounds).reduce(union));
-    let first = SvgFrame::fit(all, each, inner, sheet);
-    let row = first.size.y + caption;
-    let height = row * rows as f64 + GAP * (rows - 1) as f64 + own_row;
-    let mut page = Page::new(sheet, height, uses_text(pictures, look, true));
-    for (k, picture) in pictures.iter().enumerate() {
-        let left_top = DVec2::new((k % columns) as f64 * (each + GAP), (k / columns) as f64 * (row + GAP));
-        let frame = first.moved(left_top);
-        draw(&mut page, picture, &frame, look, k);
-        let at = left_top + DVec2::new(1.0, first.size.y + 1.25 * label);
-        page.text(at, label, "start", &format!("({}) {}", letter(k), picture.title));
-    }
-    if has_bar {
-        let y = height - caption + 1.25 * label - if own_row > 0.0 { 0.4 * label } else { 0.0 };
-        scale_bar(&mut page, &first, DVec2::new(sheet.width - 1.0, y), look);
-    }
-    page.finish()
-}
-
-/// a, b, ..., z, aa, ab, ...
-fn letter(k: usize) -> String {
-    let last = char::from(b'a' + (k % 26) as u8);
-    if k < 26 { last.to_string() } else { letter(k / 26 - 1) + &last.to_string() }
-}
-
-/// The bounds of a part with the aspect ratio of its page, 3 : 4 where the page has no height.
-fn part_bounds(part: FigurePart, width: f64, height: Option<f64>) -> [DVec2; 2] {
-    let shape = width / height.unwrap_or(0.75 * width).max(1.0);
-    let half = 0.5 * part.height * DVec2::new(shape, 1.0);
-    [part.centre - half, part.centre + half]
-}
-
-/// Whether the drawing contains text.
-fn uses_text(pictures: &[Picture], look: &Look, captions: bool) -> bool {
-    let has = |layer| look.layers.has(layer);
-    captions || has(Layer::Scale) || pictures.iter().any(|p| p.marks.iter().any(marks::is_text))
-}
-
-/// Draws a picture in its frame, clipped where it is a part.
-fn draw(page: &mut Page, picture: &Picture, frame: &SvgFrame, look: &Look, number: usize) {
-    let clip = look.part.is_some();
-    if clip {
-        page.clip(number, frame.left_top, frame.size);
-    }
-    let roles = || Role::ALL.into_iter().filter(|role| look.layers.has(Layer::of(*role)));
-    roles().for_each(|role| areas(page, picture, frame, look, role));
-    for hidden in [true, false] {
-        roles().for_each(|role| lines(page, picture, frame, look, role, hidden));
-    }
-    Marks::new(page, frame, look).draw(&picture.marks);
-    if clip {
-        page.unclip();
-    }
-}
-
-fn areas(page: &mut Page, picture: &Picture, frame: &SvgFrame, look: &Look, role: Role) {
-    let Some(fill) = figure(role, look.ink).fill else { return };
-    let mut path = Path::default();
-    for area in picture.areas.iter().filter(|a| a.role == role && frame.sees(&a.outline)) {
-        path.walk(area.outline.iter().map(|p| frame.place(*p)), true);
-    }
-    if fill == HATCH && !path.is_empty() {
-        page.define_hatch();
-    }
-    page.path(&path, &format!("fill=\"{fill}\""));
-}
-
-/// Draws the hidden or the visible lines of a role.
-fn lines(page: &mut Page, picture: &Picture, frame: &SvgFrame, look: &Look, role: Role, hidden: bool) {
-    let style = figure(role, look.ink);
-    let Some(stroke) = style.stroke else { return };
-    let weight = page.weights().line;
-    let (cap, dash) = match style.dash {
-        Some(dash) => {
-            let [on, off] = dash.map(|length| Short(length * weight));
-            ("butt", format!(" stroke-dasharray=\"{on} {off}\""))
+impl Writer<'_> {
+    fn item(&mut self, item: &Item) {
+        match item {
+            Item::Path(path, coat) => {
+                self.define_hatching(coat);
+                let _ = writeln!(self.svg, "<path {} d=\"{}\"/>", attributes(coat, 0.0), data(path));
+            }
+            Item::Bar { area, coat, corner, says } => {
+                self.define_hatching(coat);
+                let end = says
+                    .as_ref()
+                    .map_or_else(|| "/>".to_owned(), |text| format!("><title>{}</title></rect>", escaped(text)));
+                let _ = writeln!(self.svg, "<rect {} {}{end}", place(*area), attributes(coat, *corner));
+            }
+            Item::Text(text) => self.text(text),
+            Item::Clip(area) => {
+                let number = self.clips;
+                self.clips += 1;
+                let _ = writeln!(
+                    self.svg,
+                    "<clipPath id=\"part{number}\"><rect {}/></clipPath>\n<g clip-path=\"url(#part{number})\">",
+                    place(*area)
+                );
+            }
+            Item::Unclip => self.svg.push_str("</g>\n"),
         }
-        None => ("round", String::new()),
-    };
-    let opacity = if hidden { format!(" stroke-opacity=\"{}\"", look.hidden.share()) } else { String::new() };
-    for (crowded, width) in [(true, THIN.min(style.width)), (false, style.width)] {
-        let mut path = Path::default();
-        // The boundary keeps its width, for orientation.
-        let thin = |room: f64| role != Role::Boundary && room * frame.scale < CROWDED * weight;
-        let here = |l: &&Line| l.role == role && l.hidden == hidden && thin(l.room) == crowded;
-        for line in picture.lines.iter().filter(here).filter(|l| frame.sees(&l.ends)) {
-            path.walk(line.ends.iter().map(|p| frame.place(*p)), false);
+    }
+
+    /// Defines the hatching where it is used for the first time.
+    fn define_hatching(&mut self, coat: &Coat) {
+        if coat.fill == Some(Paint::Hatch) && !std::mem::replace(&mut self.hatched, true) {
+            let hatching = self.page.hatching();
+            let [apart, width] = [hatching.apart, hatching.width].map(Short);
+            let _ = writeln!(
+                self.svg,
+                "<pattern id=\"hatch\" width=\"{apart}\" height=\"{apart}\" patternUnits=\"userSpaceOnUse\" \
+                 patternTransform=\"rotate(45)\"><rect width=\"{width}\" height=\"{apart}\" fill=\"{HATCHING}\"/>\
+                 </pattern>"
+            );
         }
-        let width = Short(width * weight);
-        let stroke = format!("stroke=\"{stroke}\" stroke-width=\"{width}\" stroke-linecap=\"{cap}\"{dash}{opacity}");
-        page.path(&path, &format!("fill=\"none\" {stroke}"));
+    }
+
+    fn text(&mut self, text: &Text) {
+        let Text { at, size, anchor, colour, text, upright } = text;
+        let [x, y] = at.to_array().map(Short);
+        let place = if *upright {
+            format!("transform=\"translate({x} {y}) rotate(-90)\"")
+        } else {
+            format!("x=\"{x}\" y=\"{y}\"")
+        };
+        let anchor = match anchor {
+            Anchor::Start => "start",
+            Anchor::Middle => "middle",
+            Anchor::End => "end",
+        };
+        let _ = writeln!(
+            self.svg,
+            "<text {place} font-family=\"{FAMILY}, IBM Plex Sans, Arial, sans-serif\" font-size=\"{}\" \
+             text-anchor=\"{anchor}\" fill=\"{colour}\">{}</text>",
+            Short(*size),
+            escaped(text)
+        );
     }
 }
 
-/// Draws a scale bar of a round length that ends at `right`, with the length to its left.
-fn scale_bar(page: &mut Page, frame: &SvgFrame, right: DVec2, look: &Look) {
-    let wanted = 0.3 * frame.size.x / frame.scale;
-    if !(wanted.is_finite() && wanted > 0.0) {
-        return;
-    }
-    let power = libm::pow(10.0, libm::floor(libm::log10(wanted)));
-    let length = [5.0, 2.0, 1.0].into_iter().map(|k| k * power).find(|l| *l <= wanted).unwrap_or(power);
-    let left = right - DVec2::new(length * frame.scale, 0.0);
-    let Weights { line, text } = page.weights();
-    let note = page.weights().note();
-    let middle = DVec2::new(0.0, 0.3 * note);
-    let mut path = Path::default();
-    path.walk([left - middle, right - middle].into_iter(), false);
-    for end in [left, right] {
-        path.walk([-1.5, 1.5].into_iter().map(|y| end - middle + DVec2::new(0.0, y * text)), false);
-    }
-    let stroke = figure(Role::Boundary, look.ink).stroke.unwrap_or_default();
-    page.path(&path, &format!("fill=\"none\" stroke=\"{stroke}\" stroke-width=\"{}\"", Short(0.5 * line)));
-    page.text(left - DVec2::new(2.5 * text, 0.0), note, "end", &length_in_words(length));
+fn place([low, high]: [DVec2; 2]) -> String {
+    let ([x, y], [w, h]) = (low.to_array().map(Short), (high - low).to_array().map(Short));
+    format!("x=\"{x}\" y=\"{y}\" width=\"{w}\" height=\"{h}\"")
 }
 
-/// A round length as text: 0.2, 50, 2e-7.
-fn length_in_words(length: f64) -> String {
-    let text = crate::core::kernel::Shortest(libm::round(length * 1e12) / 1e12).to_string();
-    if length < 1e-9 { format!("{length:e}") } else { text }
+/// The attributes of a coat; `corner` is the radius of corners.
+fn attributes(coat: &Coat, corner: f64) -> String {
+    let fill = coat.fill.map_or_else(
+        || "none".to_owned(),
+        |fill| match fill {
+            Paint::Colour(colour) => colour.to_string(),
+            Paint::Hatch => "url(#hatch)".to_owned(),
+        },
+    );
+    let mut text = format!("fill=\"{fill}\"");
+    if coat.opacity < 1.0 {
+        let _ = write!(text, " fill-opacity=\"{}\"", coat.opacity);
+    }
+    if corner > 0.0 {
+        let _ = write!(text, " rx=\"{}\"", Short(corner));
+    }
+    let Some(Stroke { colour, width, cap, dash, opacity }) = coat.stroke else { return text };
+    let _ = write!(text, " stroke=\"{colour}\" stroke-width=\"{}\"", Short(width));
+    if let Some(cap) = cap {
+        let _ = write!(text, " stroke-linecap=\"{}\"", if cap == Cap::Round { "round" } else { "butt" });
+    }
+    if let Some(dash) = dash {
+        let [on, off] = dash.map(Short);
+        let _ = write!(text, " stroke-dasharray=\"{on} {off}\"");
+    }
+    if opacity < 1.0 {
+        let _ = write!(text, " stroke-opacity=\"{opacity}\"");
+    }
+    text
+}
+
+fn data(path: &Path) -> String {
+    let mut data = String::new();
+    for (points, closed) in path.parts() {
+        for (k, p) in points.iter().enumerate() {
+            let letter = if k == 0 { 'M' } else { 'L' };
+            let _ = write!(data, "{letter}{} {}", Short(p.x), Short(p.y));
+        }
+        data.push_str(if closed { "Z\n" } else { "\n" });
+    }
+    data.truncate(data.trim_end().len());
+    data
+}
+
+/// A rounded length.
+struct Short(f64);
+
+impl std::fmt::Display for Short {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{}", rounded(self.0))
+    }
+}
+
+fn escaped(text: &str) -> String {
+    let mut out = String::new();
+    for c in text.chars() {
+        match c {
+            '&' => out.push_str("&amp;"),
+            '<' => out.push_str("&lt;"),
+            '>' => out.push_str("&gt;"),
+            // XML allows no other control characters, and not these two.
+            c if c.is_control() && c != '\n' && c != '\t' || matches!(c, '\u{FFFE}' | '\u{FFFF}') => out.push(' '),
+            c => out.push(c),
+        }
+    }
+    out
 }
 
 #[cfg(test)]
-mod tests;
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lengths_are_short_and_never_minus_nothing() {
+        assert_eq!([1.0, -0.0001, 0.1 + 0.2, 1234.56789].map(|x| Short(x).to_string()), ["1", "0", "0.3", "1234.568"]);
+    }
+}

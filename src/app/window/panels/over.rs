@@ -154,7 +154,7 @@ fn about_the_mesh(ui: &mut Ui, is_at_the_end: bool, palette: &Palette) {
 fn about_the_sweep(ui: &mut Ui, state: &State, palette: &Palette) {
     let figure = state.workspace().sweep.figure().name;
     let mut lines = vec![format!(
-        "Enter saves a heat map of {figure} as .svg or .png, and all figures of each run as .csv or .json"
+        "Enter saves a heat map of {figure} as .svg, .pdf or .png, and all figures of each run as .csv or .json"
     )];
     if state.sweep().is_some_and(SweepWork::is_running) {
         lines.push("The sweep goes on: runs that are not there yet are left empty".to_owned());

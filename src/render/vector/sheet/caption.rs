@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use super::page::{Page, width};
+use crate::render::vector::page::{Anchor, Page, width};
 
 /// The distance of the rows, and the room above and below all of them, in font sizes.
 const ROW: f64 = 1.3;
@@ -52,7 +52,7 @@ impl<'a> Caption<'a> {
         let left = 0.5 * (1.0 - SHARE) * page_width;
         for (k, row) in self.wrapped(page_width).into_iter().enumerate() {
             let baseline = top + (k as f64 * ROW + 0.5 * AROUND + 1.0) * self.size;
-            page.text(DVec2::new(left, baseline), self.size, "start", row);
+            page.text(DVec2::new(left, baseline), self.size, Anchor::Start, row);
         }
     }
 }

@@ -3,11 +3,11 @@
 use glam::DVec2;
 
 use super::Weights;
-use super::frame::SvgFrame;
-use super::page::{Page, Path, Short, width};
+use super::frame::PageFrame;
 use crate::render::look::{Ink, Layer, Look};
 use crate::render::palette::{letter, note as note_ink};
 use crate::render::picture::Mark;
+use crate::render::vector::page::{Anchor, Cap, Coat, Page, Path, Stroke, width};
 
 /// Radius of nodes and wedges, on paper in points as all that follows.
 const NODE: f64 = 0.7;
@@ -20,15 +20,10 @@ const NARROW: f64 = std::f64::consts::FRAC_PI_3;
 /// An ellipse is drawn where its minor semi-axis is at least this long.
 const MINOR: f64 = 0.8;
 
-/// Whether a mark is written as text.
-pub fn is_text(mark: &Mark) -> bool {
-    matches!(mark, Mark::Letter { .. } | Mark::Arc { .. } | Mark::Beside { .. } | Mark::Over { .. })
-}
-
 /// Marks being placed on the page.
 pub struct Marks<'a> {
     page: &'a mut Page,
-    frame: &'a SvgFrame,
+    frame: &'a PageFrame,
     weights: Weights,
     /// What no plate may cover, and boxes already occupied.
     taken: Vec<[DVec2; 2]>,
@@ -38,7 +33,7 @@ pub struct Marks<'a> {
 
 impl<'a> Marks<'a> {
     /// Starts without marks.
-    pub fn new(page: &'a mut Page, frame: &'a SvgFrame, look: &Look) -> Marks<'a> {
+    pub fn new(page: &'a mut Page, frame: &'a PageFrame, look: &Look) -> Marks<'a> {
         let has = [Layer::Nodes, Layer::Ellipses].map(|layer| look.layers.has(layer));
         let weights = page.weights();
         Marks { page, frame, weights, taken: Vec::new(), has, ink: look.ink }
@@ -66,8 +61,8 @@ impl<'a> Marks<'a> {
     }
 
     /// A width on paper as it is here.
-    fn line(&self, width: f64) -> Short {
-        Short(width * self.weights.line)
+    fn line(&self, width: f64) -> f64 {
+        width * self.weights.line
     }
 
     fn nodes(&mut self, marks: &[Mark]) {
@@ -80,9 +75,8 @@ impl<'a> Marks<'a> {
                 path.walk([p, p].into_iter(), false);
             }
         }
-        let (ink, width) = (letter(self.ink), self.line(2.0 * NODE));
-        let stroke = format!("stroke=\"{ink}\" stroke-width=\"{width}\" stroke-linecap=\"round\"");
-        self.page.path(&path, &format!("fill=\"none\" {stroke}"));
+        let dot = Stroke { cap: Some(Cap::Round), ..Stroke::of(letter(self.ink), self.line(2.0 * NODE)) };
+        self.page.path(path, Coat::line(dot));
     }
 
     fn ellipses(&mut self, marks: &[Mark]) {
@@ -98,8 +92,7 @@ impl<'a> Marks<'a> {
                 path.walk((0..32).map(point), true);
             }
         }
-        let (ink, width) = (note_ink(self.ink), self.line(0.35));
-        self.page.path(&path, &format!("fill=\"none\" stroke=\"{ink}\" stroke-width=\"{width}\""));
+        self.page.path(path, Coat::line(Stroke::of(note_ink(self.ink), self.line(0.35))));
     }
 
     fn wedges(&mut self, marks: &[Mark]) {
@@ -113,7 +106,7 @@ impl<'a> Marks<'a> {
                 path.walk(std::iter::once(p).chain(arc(p, legs, radius)), true);
             }
         }
-        self.page.path(&path, &format!("fill=\"{}\"", letter(self.ink)));
+        self.page.path(path, Coat::area(letter(self.ink)));
     }
 
     /// Places a letter beside its point: opposite the point it avoids, or rotated from there until there is room.
@@ -158,8 +151,7 @@ impl<'a> Marks<'a> {
         if self.put(p + d * away, half, text, note) || always {
             let mut path = Path::default();
             path.walk(points.into_iter(), false);
-            let (ink, width) = (note_ink(self.ink), self.line(0.4));
-            self.page.path(&path, &format!("fill=\"none\" stroke=\"{ink}\" stroke-width=\"{width}\""));
+            self.page.path(path, Coat::line(Stroke::of(note_ink(self.ink), self.line(0.4))));
         }
     }
 
@@ -210,7 +202,7 @@ impl<'a> Marks<'a> {
         }
         self.taken.push(ground);
         self.page.plate(ground);
-        self.page.text(middle + DVec2::new(0.0, 0.35 * size), size, "middle", text);
+        self.page.text(middle + DVec2::new(0.0, 0.35 * size), size, Anchor::Middle, text);
         true
     }
 }

@@ -12,7 +12,7 @@ const MARGIN_FOR_LABELS: f64 = 9.0;
 
 /// A frame on the page, x to the right and y down, with the map of the mesh into it.
 #[derive(Clone, Copy, Debug)]
-pub struct SvgFrame {
+pub struct PageFrame {
     /// The top left corner of the mesh, in its coordinates.
     corner: DVec2,
     /// That corner on the page.
@@ -27,9 +27,9 @@ pub struct SvgFrame {
     reach: f64,
 }
 
-impl SvgFrame {
+impl PageFrame {
     /// A frame at the top left of the page, with a box of the plane centred in it and scaled to fit.
-    pub fn fit(bounds: Option<[DVec2; 2]>, width: f64, height: Option<f64>, sheet: &Sheet<'_>) -> SvgFrame {
+    pub fn fit(bounds: Option<[DVec2; 2]>, width: f64, height: Option<f64>, sheet: &Sheet<'_>) -> PageFrame {
         let (look, Weights { line, text }) = (&sheet.look, sheet.weights);
         let [low, high] = bounds.unwrap_or([DVec2::ZERO, DVec2::ONE]);
         let size = high - low;
@@ -48,7 +48,7 @@ impl SvgFrame {
             scale = inner / size.y;
         }
         let page = DVec2::new(width, height);
-        SvgFrame {
+        PageFrame {
             corner: DVec2::new(low.x, high.y),
             origin: 0.5 * (page - size * scale),
             scale,
@@ -59,8 +59,8 @@ impl SvgFrame {
     }
 
     /// The same frame elsewhere on the page.
-    pub fn moved(&self, left_top: DVec2) -> SvgFrame {
-        SvgFrame { origin: self.origin + left_top, left_top, ..*self }
+    pub fn moved(&self, left_top: DVec2) -> PageFrame {
+        PageFrame { origin: self.origin + left_top, left_top, ..*self }
     }
 
     /// The page position of a point of the mesh.
