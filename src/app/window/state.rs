@@ -128,19 +128,30 @@ impl State {
 
     /// The question that waits for an answer at the current state.
     pub fn open_question(&self) -> Option<&Posed> {
-        self.shown_study()?.open_question(self.run.moment.as_ref()?.step)
+        self.study_at().and_then(|(study, step)| study.open_question(step))
+    }
+
+    /// The study that is shown, and the step of the current state.
+    fn study_at(&self) -> Option<(&Study, u64)> {
+        self.shown_study().zip(self.run.moment.as_ref().map(|moment| moment.step))
     }
 
     /// Whether classes and H-values would give an answer away.
     pub fn hides_classes(&self) -> bool {
-        let step = self.run.moment.as_ref().map(|moment| moment.step);
-        self.shown_study().zip(step).is_some_and(|(study, step)| study.hides_classes(step))
+        self.study_at().is_some_and(|(study, step)| study.hides_classes(step))
     }
 
     /// Whether the candidates that the step before refused would hide what a lesson speaks of.
     pub fn hides_candidates(&self) -> bool {
-        let step = self.run.moment.as_ref().map(|moment| moment.step);
-        self.shown_study().zip(step).is_some_and(|(study, step)| study.is_about(step))
+        self.study_at().is_some_and(|(study, step)| study.is_about(step))
+    }
+
+    /// What is lit because the pointer is on words, or because a lesson speaks of it.
+    pub fn spoken(&self) -> Vec<Outlined> {
+        match &self.frame.pointed[..] {
+            [] => self.study_at().map_or_else(Vec::new, |(study, step)| study.lit(step)),
+            pointed => pointed.to_vec(),
+        }
     }
 
     /// Whether the keys of the window step by operation.

@@ -2,6 +2,7 @@
 
 mod finding;
 mod held;
+mod marking;
 mod opening;
 mod pair;
 mod parameters;
@@ -13,7 +14,7 @@ use std::time::{Duration, Instant};
 
 pub(super) use pair::are_in_one_place;
 
-use super::{Breakpoint, Document, Look, Overlay, State, SurfaceView, ViewCamera, ViewKind, Watchpoint, watched};
+use super::{Document, Look, Overlay, State, SurfaceView, ViewCamera, ViewKind, watched};
 use crate::app::command_line::Overrides;
 use crate::app::window::command::Command;
 use crate::app::window::figures::Formats;
@@ -29,7 +30,7 @@ use crate::app::window::words;
 use crate::core::convert::Event;
 use crate::core::fault::Fault;
 use crate::core::mesh::NodeId;
-use crate::core::run::{Bookmark, Condition, Edit, EditKind, Query, Watched};
+use crate::core::run::{Edit, EditKind, Query};
 use crate::render::scene::Outlined;
 
 impl State {
@@ -373,14 +374,6 @@ impl State {
         }
     }
 
-    /// Has the session find where the breakpoints hold; switched off, one keeps its count.
-    pub(super) fn count_breakpoints(&self) {
-        let all = self.document().breakpoints.iter().filter_map(|b| Condition::parse(&b.condition).ok());
-        if let Some(session) = &self.run.session {
-            session.ask(Ask::Count(all.collect()));
-        }
-    }
-
     /// Replaces the base if it has just been selected, or else decides the next selection.
     fn choose_base(&mut self, [a, b]: [NodeId; 2]) {
         let Some(moment) = &self.run.moment else { return };
@@ -389,56 +382,6 @@ impl State {
         self.edit([Edit { step, kind: EditKind::Base { a, b } }]);
         let which = if selected { "The base is now" } else { "The next base will be" };
         self.notice(format!("{which} {}.", words::segment([a, b])));
-    }
-
-    fn add_breakpoint(&mut self, text: String) {
-        let condition = text.trim().to_owned();
-        if condition.is_empty() || self.document().breakpoints.iter().any(|b| b.condition == condition) {
-            return;
-        }
-        match Condition::parse(&condition) {
-            Ok(_) => self.change(|document| document.breakpoints.push(Breakpoint { condition, is_on: true })),
-            Err(fault) => self.complain(&fault),
-        }
-    }
-
-    fn seek_breakpoint(&mut self, direction: Direction) {
-        let stops = self.stops();
-        if stops.conditions.is_empty() && stops.watched.is_empty() {
-            return self.notice("No breakpoint is on: add a condition in the Breakpoints panel.".to_owned());
-        }
-        self.ask(Ask::Break(stops, direction));
-    }
-
-    /// Watches something, or stops watching it.
-    fn watch(&mut self, watched: Watched) {
-        self.change(|document| match document.watches.iter().position(|watch| watch.watched == watched) {
-            Some(k) => drop(document.watches.remove(k)),
-            None => document.watches.push(Watchpoint { watched, is_on: true }),
-        });
-    }
-
-    /// Sets a bookmark at the current step, or removes it.
-    fn bookmark(&mut self) {
-        let Some(step) = self.run.moment.as_ref().map(|moment| moment.step) else { return };
-        let is_new = self.document().bookmarks.iter().all(|mark| mark.step != step);
-        if is_new {
-            self.view.reveal.ask(Some(Pane::Bookmarks));
-        }
-        self.change(|document| match document.bookmarks.binary_search_by_key(&step, |mark| mark.step) {
-            Ok(k) => drop(document.bookmarks.remove(k)),
-            Err(k) => document.bookmarks.insert(k, Bookmark { step, note: String::new() }),
-        });
-    }
-
-    /// Has the note on the current step written, with a bookmark if there is none.
-    fn note_here(&mut self) {
-        let Some(step) = self.run.moment.as_ref().map(|moment| moment.step) else { return };
-        if self.document().bookmarks.iter().all(|mark| mark.step != step) {
-            self.bookmark();
-        }
-        self.view.reveal.ask(Some(Pane::Bookmarks));
-        self.view.note.ask(step);
     }
 
     /// Asks the session about the current state. Returns its step.

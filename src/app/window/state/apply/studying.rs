@@ -11,7 +11,6 @@ use crate::core::formats::save::save;
 use crate::core::lesson::built_in::LESSONS;
 use crate::core::question::{Answer, Series};
 use crate::core::run::explain::plain;
-use crate::render::scene::Outlined;
 
 impl State {
     /// Does what the learner asks for.
@@ -234,17 +233,5 @@ impl State {
             command,
             StudyCommand::Open(_) | StudyCommand::Resume | StudyCommand::Predict | StudyCommand::PredictSeries(_)
         )
-    }
-}
-
-/// What is lit because the pointer is on words, or because the lesson speaks of it.
-impl State {
-    /// What is spoken of.
-    pub fn spoken(&self) -> Vec<Outlined> {
-        if !self.frame.pointed.is_empty() {
-            return self.frame.pointed.clone();
-        }
-        let step = self.run.moment.as_ref().map(|moment| moment.step);
-        self.shown_study().zip(step).map_or_else(Vec::new, |(study, step)| study.lit(step))
     }
 }
