@@ -1,5 +1,6 @@
 //! Figures for commands and the window: the states drawn, the style, the size, and the run embedded in the file.
 
+pub(super) mod every;
 mod options;
 
 pub(super) use options::{FigureOptions, LayerWords, Plot};
@@ -41,7 +42,7 @@ impl Figure {
     /// # Errors
     /// The mesh file of the run can no longer be read; no room for a caption.
     pub fn of_run(run: &Run, frames: &[FigureFrame], options: &FigureOptions, embeds: bool) -> Result<Figure, Fault> {
-        let strip = frames.len() > 1;
+        let strip = options.is_grid(frames.len());
         let mut description = describe(&run.case);
         if let [FigureFrame { shown, .. }] = frames
             && let Some(at) = shown.at
@@ -69,6 +70,10 @@ impl Figure {
                 Some(Plot::Angles) => Histogram::of_angles(statistics).draw(&sheet),
                 _ => Histogram::of_lengths(statistics).draw(&sheet),
             },
+            _ if options.contact_sheet == Some(true) => {
+                let named = |frame: &FigureFrame| Picture { title: frame.name.clone(), ..frame.picture.clone() };
+                sheet::contact_sheet(&frames.iter().map(named).collect::<Vec<_>>(), &sheet)
+            }
             [frame] => sheet::page(&frame.picture, &sheet),
             _ => {
                 let captioned =
@@ -149,11 +154,8 @@ pub(super) fn make(
     embeds: bool,
     watch: &mut dyn Watch,
 ) -> Result<(Figure, Vec<FigureFrame>), Fault> {
-    if options.plot.is_some() && wanted.len() > 1 {
-        return Err(Fault::new("A histogram shows one state").at("--plot").remedy("Name one stop with --at"));
-    }
-    options.check_captions(wanted.len() == 1 && options.plot.is_none())?;
-    let look = options.look(wanted.len() > 1);
+    options.check(wanted.len())?;
+    let look = options.look(options.is_grid(wanted.len()));
     let frames = work::frames(run, wanted, &look, options.plot.is_some(), watch)?;
     Ok((Figure::of_run(run, &frames, options, embeds)?, frames))
 }

@@ -228,7 +228,11 @@ pub(in crate::app) struct FigureOptions {
     /// Write below the mesh what the last step did, in a sentence
     #[arg(long, value_name = "YES", num_args = 0..=1, require_equals = true, default_missing_value = "true")]
     pub captions: Option<bool>,
-    /// Frames side by side in a strip [default: at most 4, in rows of equal length]
+    /// Draw the states as a grid on one page, each with its step and the number of quadrilaterals
+    #[arg(long, value_name = "YES", num_args = 0..=1, require_equals = true, default_missing_value = "true")]
+    pub contact_sheet: Option<bool>,
+    /// Frames side by side in a strip, or on a contact sheet [default: at most 4, in rows of equal length; on a contact
+    /// sheet as many as make a page of the shape of paper]
     #[arg(long, value_name = "NUMBER", value_parser = clap::value_parser!(u32).range(1..=26))]
     pub columns: Option<u32>,
 }
@@ -260,6 +264,7 @@ impl FigureOptions {
             self.hidden.map(|hidden| format!("--hidden={}", hidden.name())),
             self.parametric.map(|yes| format!("--parametric={yes}")),
             self.captions.map(|yes| format!("--captions={yes}")),
+            self.contact_sheet.map(|yes| format!("--contact-sheet={yes}")),
             self.columns.map(|columns| format!("--columns={columns}")),
         ];
         words.into_iter().flatten().collect()
@@ -297,6 +302,7 @@ impl FigureOptions {
             hidden,
             parametric,
             captions,
+            contact_sheet,
             columns
         ))
     }
@@ -314,6 +320,11 @@ impl FigureOptions {
             hidden: self.hidden.unwrap_or_default(),
             parametric: self.parametric.unwrap_or(false),
         }
+    }
+
+    /// Whether several states, or one in the manner of several, are drawn on one page.
+    pub fn is_grid(&self, states: usize) -> bool {
+        states > 1 || self.contact_sheet == Some(true)
     }
 
     /// Dots per inch.
@@ -340,6 +351,18 @@ impl FigureOptions {
         let usual = pixel.map_or(Weights::PAPER, Weights::of_pixels);
         let size = self.font_size.map(|size| size * pixel.unwrap_or(1.0));
         Weights { line: usual.line * self.line_scale.unwrap_or(1.0), text: size.map_or(usual.text, |size| size / NOTE) }
+    }
+
+    /// Refuses what does not fit so many states of a run in one figure.
+    ///
+    /// # Errors
+    /// Several states in a plot, or on a contact sheet; captions.
+    pub fn check(&self, states: usize) -> Result<(), Fault> {
+        let is_grid = self.is_grid(states);
+        if self.plot.is_some() && is_grid {
+            return Err(Fault::new("A plot shows one state").at("--plot").remedy("Name one stop with --at"));
+        }
+        self.check_captions(!is_grid && self.plot.is_none())
     }
 
     /// Refuses captions where a figure does not show one state of a run.
@@ -391,6 +414,7 @@ mod tests {
             "--view=x --hidden=faint",
             "--size=640x480 --line-scale=1.5 --font-size=14",
             "--ink=dark --captions=true --parametric=true",
+            "--contact-sheet=true --columns=5",
         ] {
             let words: Vec<String> = line.split_whitespace().map(str::to_owned).collect();
             let options = FigureOptions::from_words(&words).unwrap();

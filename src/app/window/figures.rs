@@ -193,6 +193,7 @@ impl FigureForm {
             hidden: view.map(|view| view.1).filter(|hidden| *hidden != HiddenLines::Off),
             parametric: None,
             captions: None,
+            contact_sheet: None,
             columns: None,
         })
     }
