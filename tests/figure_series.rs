@@ -160,7 +160,7 @@ fn series_that_cannot_be_drawn_are_refused() {
         ("render example1 --every 5 --at nq=1,2,3 -o a.svg", "the first and the last state"),
         ("render example1 --every 5 --at end -o a.svg", "the first and the last state"),
         ("render uniform --every event --at step=1,100000 -o a.svg", "The conversion ends"),
-        ("render example1 --set size_scale=.5 --every event --contact-sheet -o a.svg", "more than 1\u{2009}000 frames"),
+        ("render example1 --every event --contact-sheet -o a.svg", "more than 1\u{2009}000 frames"),
         ("render example1 --every 5 --contact-sheet --captions -o a.svg", "caption"),
         ("render example1 --contact-sheet --plot timeline -o a.svg", "A plot shows one state"),
         ("render example1 --at nq=1,2 --plot decision -o a.svg", "A plot shows one state"),

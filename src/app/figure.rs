@@ -2,6 +2,7 @@
 
 pub(super) mod every;
 mod options;
+mod told;
 
 pub(super) use options::{FigureOptions, LayerWords, Plot};
 #[cfg(feature = "window")]
@@ -14,7 +15,7 @@ use crate::core::convert::Stop;
 use crate::core::fault::Fault;
 use crate::core::progress::Watch;
 use crate::core::record::run_file;
-use crate::core::run::{Run, Shown};
+use crate::core::run::{Run, Shown, ShownState};
 use crate::render::picture::Picture;
 use crate::render::vector::histogram::Histogram;
 use crate::render::vector::page::Page;
@@ -43,21 +44,9 @@ impl Figure {
     /// The mesh file of the run can no longer be read; no room for a caption.
     pub fn of_run(run: &Run, frames: &[FigureFrame], options: &FigureOptions, embeds: bool) -> Result<Figure, Fault> {
         let strip = options.is_grid(frames.len());
-        let mut description = describe(&run.case);
-        if let [FigureFrame { shown, .. }] = frames
-            && let Some(at) = shown.at
-        {
-            description = format!("{description}, at {at}");
-        }
-        let embedded = if embeds {
-            let states = frames.iter().map(|frame| frame.shown).collect();
-            let shown = Shown { states, drawn: options.words() };
-            let mut run = run.clone();
-            run.shown = Some(shown);
-            Some(run_file::embedded(&run)?)
-        } else {
-            None
-        };
+        let description = described(run, if let [frame] = frames { Some(frame) } else { None });
+        let states: Vec<ShownState> = frames.iter().map(|frame| frame.shown).collect();
+        let embedded = carried(run, &states, options, embeds)?;
         let below = match frames {
             [frame] => options.caption(&frame.caption),
             _ => None,
@@ -112,6 +101,22 @@ impl Figure {
     }
 }
 
+/// What a figure of a run shows, and at which stop where it shows one state.
+fn described(run: &Run, frame: Option<&FigureFrame>) -> String {
+    let case = describe(&run.case);
+    frame.and_then(|frame| frame.shown.at).map_or_else(|| case.clone(), |at| format!("{case}, at {at}"))
+}
+
+/// The text of the run that a figure of these states embeds; `None` where it shall not.
+fn carried(run: &Run, states: &[ShownState], options: &FigureOptions, embeds: bool) -> Result<Option<String>, Fault> {
+    if !embeds {
+        return Ok(None);
+    }
+    let mut run = run.clone();
+    run.shown = Some(Shown { states: states.to_vec(), drawn: options.words() });
+    run_file::embedded(&run).map(Some)
+}
+
 /// The caption of a stop below its frame.
 fn caption(at: Option<Stop>) -> String {
     match at {
@@ -155,6 +160,10 @@ pub(super) fn make(
     watch: &mut dyn Watch,
 ) -> Result<(Figure, Vec<FigureFrame>), Fault> {
     options.check(wanted.len())?;
+    if let (Some(plot), [wanted]) = (options.plot.filter(|plot| !plot.is_of_statistics()), wanted) {
+        let (figure, frame) = told::make(run, *wanted, plot, options, embeds, watch)?;
+        return Ok((figure, vec![frame]));
+    }
     let look = options.look(options.is_grid(wanted.len()));
     let frames = work::frames(run, wanted, &look, options.plot.is_some(), watch)?;
     Ok((Figure::of_run(run, &frames, options, embeds)?, frames))

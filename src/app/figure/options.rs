@@ -62,13 +62,29 @@ impl std::fmt::Display for Size {
     }
 }
 
-/// What a histogram shows.
+/// What a plot shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub(in crate::app) enum Plot {
     /// Edge lengths in the metric, as proportions of all edges (fig. 23)
     Lengths,
     /// Smallest and largest angles of the elements (fig. 24)
     Angles,
+    /// The run over time: lanes of events, invariants and curves; values at the stop
+    Timeline,
+    /// What the step of the stop decided, why, and the table of what it chose from
+    Decision,
+}
+
+impl Plot {
+    /// Its name.
+    fn name(self) -> &'static str {
+        ["lengths", "angles", "timeline", "decision"][self as usize]
+    }
+
+    /// Whether it is a histogram of the statistics of a state.
+    pub fn is_of_statistics(self) -> bool {
+        matches!(self, Plot::Lengths | Plot::Angles)
+    }
 }
 
 /// The layers of a figure as text: names of all layers, or changes to the default.
@@ -209,7 +225,7 @@ pub(in crate::app) struct FigureOptions {
     /// h, angles, ellipses, scale; or changes to the default (--layers=+h,-letters)
     #[arg(long, value_name = "NAMES", allow_hyphen_values = true)]
     pub layers: Option<LayerWords>,
-    /// Draw a histogram instead of the mesh
+    /// Draw a plot instead of the mesh
     #[arg(long, value_name = "WHAT")]
     pub plot: Option<Plot>,
     /// Draw only a part: its centre and its height in units of the case
@@ -248,7 +264,6 @@ struct Words {
 impl FigureOptions {
     /// The options as command-line arguments.
     pub fn words(&self) -> Vec<String> {
-        let plots = |plot| if plot == Plot::Lengths { "lengths" } else { "angles" };
         let part = |PartWords(part): PartWords| format!("{},{},{}", part.centre.x, part.centre.y, part.height);
         let words = [
             self.size.map(|size| format!("--size={size}")),
@@ -258,7 +273,7 @@ impl FigureOptions {
             self.ink.map(|ink| format!("--ink={}", ink.name())),
             self.transparent.map(|yes| format!("--transparent={yes}")),
             self.layers.as_ref().map(|layers| format!("--layers={}", layers.0)),
-            self.plot.map(|plot| format!("--plot={}", plots(plot))),
+            self.plot.map(|plot| format!("--plot={}", plot.name())),
             self.part.map(|words| format!("--part={}", part(words))),
             self.view.map(|side| format!("--view={side}")),
             self.hidden.map(|hidden| format!("--hidden={}", hidden.name())),
@@ -414,6 +429,8 @@ mod tests {
             "--view=x --hidden=faint",
             "--size=640x480 --line-scale=1.5 --font-size=14",
             "--ink=dark --captions=true --parametric=true",
+            "--plot=timeline",
+            "--plot=decision",
             "--contact-sheet=true --columns=5",
         ] {
             let words: Vec<String> = line.split_whitespace().map(str::to_owned).collect();
