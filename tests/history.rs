@@ -14,7 +14,7 @@ use quadfront::core::mesh::NodeId;
 use quadfront::core::prepare::Background;
 use quadfront::core::progress::Nobody;
 use quadfront::core::run::history::BUDGET;
-use quadfront::core::run::timeline::lanes;
+use quadfront::core::run::timeline::{LANES, Span, Tracked, count};
 use quadfront::core::run::{Appearance, Changes, Condition, Edit, EditKind, History, Run, Watched};
 
 fn run_of(name: &str, size_scale: f64) -> (Run, Background) {
@@ -325,9 +325,13 @@ fn the_samples_along_a_run_say_that_its_invariants_hold() {
         let mesh = &history.state().mesh;
         let worst = mesh.elements().map(|e| mesh.quality(e)).fold(f64::INFINITY, f64::min);
         assert!((last.worst_quality - worst).abs() < 1e-6, "{name}: {} is {worst}", last.worst_quality);
-        let columns = lanes(history.log(), 1, end, 100);
-        let total: u32 = columns.iter().flatten().sum();
-        assert_eq!(u64::from(total), end, "{name}: every step is in one lane and one column");
+        let track: Vec<Tracked> = (1..=end).map(|step| Tracked::of(history.log(), step).unwrap()).collect();
+        let span = Span { steps: [0.0, end as f64], columns: 100 };
+        for (lane, counted) in LANES.iter().zip(count(&track, &LANES.map(|lane| lane.kinds), &span)) {
+            let all = history.log().kinds(1, end).filter(|kind| lane.kinds.contains(kind)).count() as u64;
+            let in_columns: u64 = counted.bins.iter().copied().map(u64::from).sum();
+            assert_eq!([counted.total, in_columns], [all; 2], "{name}: each event is in one column of {}", lane.name);
+        }
     }
 }
 

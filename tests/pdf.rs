@@ -36,6 +36,8 @@ fn reader(words: &[&str], folder: &Path) -> Option<String> {
     match Command::new(words[0]).args(&words[1..]).current_dir(folder).output() {
         Ok(output) => {
             let err = String::from_utf8_lossy(&output.stderr);
+            // This is about the reader, which is built so by Debian, and not about the file.
+            let err = err.replace("warning: ICC support is not available\n", "");
             assert!(output.status.success() && err.is_empty(), "{words:?}: {err}");
             Some(String::from_utf8_lossy(&output.stdout).into_owned())
         }
@@ -47,21 +49,21 @@ fn reader(words: &[&str], folder: &Path) -> Option<String> {
     }
 }
 
-/// Figures that have, together, everything that can be drawn; `@` is the name of the file. Each has its pixels an inch.
-const FIGURES: [(&str, &str); 13] = [
-    ("render example1 --set size_scale=2 --at nq=20 -o @", "300"),
-    ("render figure-16 --at step=3 --ink grey --layers +changed,+nodes --size 60x40mm -o @", "300"),
-    ("render example1 --set size_scale=2 --strip nq=5,20,end --columns 2 -o @", "300"),
-    ("render figure-14 --at step=3 --part 0.5,0.5,1 --size 300x200 --layers +h,+angles,+ellipses,+scale -o @", "96"),
-    ("render example1 --at step=3 --layers=+candidates --part=0.5,0.7,0.1 -o @", "300"),
-    ("render figure-14 --at step=3 --layers=+h,+angles,+scale --captions --ink dark -o @", "300"),
-    ("render example1 --set size_scale=2 --at nq=20 --plot lengths --ink grey -o @", "300"),
-    ("render example1 --set size_scale=2 --at nq=20 --plot angles --size 640x480 -o @", "96"),
-    ("render example5 --set size_scale=2 --at nq=60 --view=-60,20 --hidden faint -o @", "300"),
-    ("render two-faces --parametric --size 120mm -o @", "300"),
-    ("render example1 --set size_scale=2 --strip nq=5,20 --part 0.5,0.5,0.4 -o @", "300"),
-    ("convert example1 --set size_scale=2 --picture @", "300"),
-    ("sweep uniform --set size_scale=3 --over c=1:2:.5 --over faces=plate,nothing -o @", "300"),
+/// Figures that have, together, everything that can be drawn; `@` is the name of the file.
+const FIGURES: [&str; 13] = [
+    "render example1 --set size_scale=2 --at nq=20 -o @",
+    "render figure-16 --at step=3 --ink grey --layers +changed,+nodes --size 60x40mm -o @",
+    "render example1 --set size_scale=2 --strip nq=5,20,end --columns 2 -o @",
+    "render figure-14 --at step=3 --part 0.5,0.5,1 --size 300x200 --layers +h,+angles,+ellipses,+scale -o @",
+    "render example1 --at step=3 --layers=+candidates --part=0.5,0.7,0.1 -o @",
+    "render figure-14 --at step=3 --layers=+h,+angles,+scale --captions --ink dark -o @",
+    "render example1 --set size_scale=2 --at nq=20 --plot lengths --ink grey -o @",
+    "render example1 --set size_scale=2 --at nq=20 --plot angles --size 640x480 -o @",
+    "render example5 --set size_scale=2 --at nq=60 --view=-60,20 --hidden faint -o @",
+    "render two-faces --parametric --size 120mm -o @",
+    "render example1 --set size_scale=2 --strip nq=5,20 --part 0.5,0.5,0.4 -o @",
+    "convert example1 --set size_scale=2 --picture @",
+    "sweep uniform --set size_scale=3 --over c=1:2:.5 --over faces=plate,nothing -o @",
 ];
 
 /// Draws a figure to a file.
@@ -118,20 +120,23 @@ fn apart(a: &Pixels, b: &Pixels) -> [f64; 2] {
 fn two_readers_open_a_pdf_without_a_warning_and_show_what_the_png_shows() {
     let folder = tempfile::tempdir().unwrap();
     let here = folder.path();
-    for (figure, resolution) in FIGURES {
+    for figure in FIGURES {
         drawn(figure, "a.pdf", here);
         drawn(figure, "a.png", here);
         let ours = pixels(&read(here, "a.png"));
-        if reader(&["pdftoppm", "-png", "-r", resolution, "-singlefile", "a.pdf", "poppler"], here).is_none()
-            || reader(&["mutool", "draw", "-q", "-r", resolution, "-o", "mupdf.png", "a.pdf"], here).is_none()
-        {
+        // In as many pixels: a page is not a whole number of them.
+        let [width, height] = [ours.width, ours.rgb.len() / ours.width].map(|pixels| pixels.to_string());
+        let (w, h) = (width.as_str(), height.as_str());
+        let poppler = ["pdftoppm", "-png", "-scale-to-x", w, "-scale-to-y", h, "-singlefile", "a.pdf", "poppler"];
+        let mupdf = ["mutool", "draw", "-q", "-w", w, "-h", h, "-f", "-o", "mupdf.png", "a.pdf"];
+        if reader(&poppler, here).is_none() || reader(&mupdf, here).is_none() {
             return;
         }
         for name in ["poppler", "mupdf"] {
             let theirs = pixels(&read(here, &format!("{name}.png")));
             let [mean, greatest] = apart(&ours, &theirs);
             println!("{name} {mean:.2} {greatest:.1} {figure}");
-            assert!(mean < 3.0 && greatest < 40.0, "{figure}, {name}: {mean:.2}, {greatest:.1}");
+            assert!(mean < 4.5 && greatest < 40.0, "{figure}, {name}: {mean:.2}, {greatest:.1}");
         }
     }
 }
@@ -182,7 +187,7 @@ fn text_can_be_selected_in_a_subset_of_the_font_on_a_page_of_true_size() {
 fn a_pdf_is_drawn_again_from_itself_to_the_same_bytes() {
     let folder = tempfile::tempdir().unwrap();
     let here = folder.path();
-    for (figure, _) in FIGURES.iter().filter(|(figure, _)| !figure.starts_with("sweep")) {
+    for figure in FIGURES.iter().filter(|figure| !figure.starts_with("sweep")) {
         drawn(figure, "a.pdf", here);
         drawn(figure, "a.svg", here);
         assert!(read(here, "a.pdf").starts_with(b"%PDF-1.7"), "{figure}");

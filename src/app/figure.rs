@@ -1,6 +1,8 @@
 //! Figures for commands and the window: the states drawn, the style, the size, and the run embedded in the file.
 
+pub(super) mod every;
 mod options;
+mod told;
 
 pub(super) use options::{FigureOptions, LayerWords, Plot};
 #[cfg(feature = "window")]
@@ -13,7 +15,7 @@ use crate::core::convert::Stop;
 use crate::core::fault::Fault;
 use crate::core::progress::Watch;
 use crate::core::record::run_file;
-use crate::core::run::{Run, Shown};
+use crate::core::run::{Run, Shown, ShownState};
 use crate::render::picture::Picture;
 use crate::render::vector::histogram::Histogram;
 use crate::render::vector::page::Page;
@@ -41,22 +43,10 @@ impl Figure {
     /// # Errors
     /// The mesh file of the run can no longer be read; no room for a caption.
     pub fn of_run(run: &Run, frames: &[FigureFrame], options: &FigureOptions, embeds: bool) -> Result<Figure, Fault> {
-        let strip = frames.len() > 1;
-        let mut description = describe(&run.case);
-        if let [FigureFrame { shown, .. }] = frames
-            && let Some(at) = shown.at
-        {
-            description = format!("{description}, at {at}");
-        }
-        let embedded = if embeds {
-            let states = frames.iter().map(|frame| frame.shown).collect();
-            let shown = Shown { states, drawn: options.words() };
-            let mut run = run.clone();
-            run.shown = Some(shown);
-            Some(run_file::embedded(&run)?)
-        } else {
-            None
-        };
+        let strip = options.is_grid(frames.len());
+        let description = described(run, if let [frame] = frames { Some(frame) } else { None });
+        let states: Vec<ShownState> = frames.iter().map(|frame| frame.shown).collect();
+        let embedded = carried(run, &states, options, embeds)?;
         let below = match frames {
             [frame] => options.caption(&frame.caption),
             _ => None,
@@ -69,6 +59,10 @@ impl Figure {
                 Some(Plot::Angles) => Histogram::of_angles(statistics).draw(&sheet),
                 _ => Histogram::of_lengths(statistics).draw(&sheet),
             },
+            _ if options.contact_sheet == Some(true) => {
+                let named = |frame: &FigureFrame| Picture { title: frame.name.clone(), ..frame.picture.clone() };
+                sheet::contact_sheet(&frames.iter().map(named).collect::<Vec<_>>(), &sheet)
+            }
             [frame] => sheet::page(&frame.picture, &sheet),
             _ => {
                 let captioned =
@@ -105,6 +99,22 @@ impl Figure {
             }
         }
     }
+}
+
+/// What a figure of a run shows, and at which stop where it shows one state.
+fn described(run: &Run, frame: Option<&FigureFrame>) -> String {
+    let case = describe(&run.case);
+    frame.and_then(|frame| frame.shown.at).map_or_else(|| case.clone(), |at| format!("{case}, at {at}"))
+}
+
+/// The text of the run that a figure of these states embeds; `None` where it shall not.
+fn carried(run: &Run, states: &[ShownState], options: &FigureOptions, embeds: bool) -> Result<Option<String>, Fault> {
+    if !embeds {
+        return Ok(None);
+    }
+    let mut run = run.clone();
+    run.shown = Some(Shown { states: states.to_vec(), drawn: options.words() });
+    run_file::embedded(&run).map(Some)
 }
 
 /// The caption of a stop below its frame.
@@ -149,11 +159,12 @@ pub(super) fn make(
     embeds: bool,
     watch: &mut dyn Watch,
 ) -> Result<(Figure, Vec<FigureFrame>), Fault> {
-    if options.plot.is_some() && wanted.len() > 1 {
-        return Err(Fault::new("A histogram shows one state").at("--plot").remedy("Name one stop with --at"));
+    options.check(wanted.len())?;
+    if let (Some(plot), [wanted]) = (options.plot.filter(|plot| !plot.is_of_statistics()), wanted) {
+        let (figure, frame) = told::make(run, *wanted, plot, options, embeds, watch)?;
+        return Ok((figure, vec![frame]));
     }
-    options.check_captions(wanted.len() == 1 && options.plot.is_none())?;
-    let look = options.look(wanted.len() > 1);
+    let look = options.look(options.is_grid(wanted.len()));
     let frames = work::frames(run, wanted, &look, options.plot.is_some(), watch)?;
     Ok((Figure::of_run(run, &frames, options, embeds)?, frames))
 }

@@ -8,6 +8,7 @@ use crate::core::case::{Case, DomainSource, MeshUse, Parameters};
 use crate::core::convert::walk::walk_editing;
 use crate::core::convert::{Candidates, Converter, Event, Phase, StepReport, Stop, Tell, conversion};
 use crate::core::fault::Fault;
+use crate::core::kernel::number::grouped;
 use crate::core::mesh::{Mesh, Names, Touched};
 use crate::core::metric::Sizing;
 use crate::core::prepare::{self, Background};
@@ -179,12 +180,20 @@ pub(super) struct FigureFrame {
     pub statistics: Option<Statistics>,
     /// What the last step did, in a sentence; empty where that is not known.
     pub caption: String,
+    /// Its step and the number of quadrilaterals that stand; empty where that is not known.
+    pub name: String,
 }
 
 impl FigureFrame {
     /// A state, without statistics and caption.
     pub fn of(seen: &Seen<'_>, look: &Look, shown: ShownState) -> FigureFrame {
-        FigureFrame { picture: Picture::of_state(seen, look), shown, statistics: None, caption: String::new() }
+        FigureFrame {
+            picture: Picture::of_state(seen, look),
+            shown,
+            statistics: None,
+            caption: String::new(),
+            name: String::new(),
+        }
     }
 }
 
@@ -253,7 +262,8 @@ impl LastStep {
         let (changed, candidates) = (changed.elements(), self.tried.as_ref());
         let seen = Seen { mesh, parameters: converter.parameters(), phase, changed, candidates };
         let shown = ShownState { step: converter.counts.steps, at, state: fingerprint(mesh, phase) };
-        FigureFrame { caption: self.caption(mesh), ..FigureFrame::of(&seen, look, shown) }
+        let name = format!("step {}, NQ {}", grouped(shown.step), grouped(converter.standing()));
+        FigureFrame { caption: self.caption(mesh), name, ..FigureFrame::of(&seen, look, shown) }
     }
 }
 

@@ -268,6 +268,15 @@ pub fn colours(ink: Ink) -> Vec<[u8; 3]> {
     all.map(|Rgba([r, g, b, _])| [r, g, b]).collect()
 }
 
+/// The inks of what holds and of what is broken in figures.
+pub fn verdicts(ink: Ink) -> [Rgba; 2] {
+    match ink {
+        Ink::Grey => [Rgba::hex(0x808080), Rgba::hex(0x000000)],
+        Ink::Colour => [LIGHT.holds, LIGHT.broken],
+        Ink::Dark => [DARK.holds, DARK.broken],
+    }
+}
+
 /// The two series of a histogram in a figure: fill and outline of its bars.
 pub fn bars(ink: Ink) -> [[Rgba; 2]; 2] {
     match ink {

@@ -62,13 +62,29 @@ impl std::fmt::Display for Size {
     }
 }
 
-/// What a histogram shows.
+/// What a plot shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub(in crate::app) enum Plot {
     /// Edge lengths in the metric, as proportions of all edges (fig. 23)
     Lengths,
     /// Smallest and largest angles of the elements (fig. 24)
     Angles,
+    /// The run over time: lanes of events, invariants and curves; values at the stop
+    Timeline,
+    /// What the step of the stop decided, why, and the table of what it chose from
+    Decision,
+}
+
+impl Plot {
+    /// Its name.
+    fn name(self) -> &'static str {
+        ["lengths", "angles", "timeline", "decision"][self as usize]
+    }
+
+    /// Whether it is a histogram of the statistics of a state.
+    pub fn is_of_statistics(self) -> bool {
+        matches!(self, Plot::Lengths | Plot::Angles)
+    }
 }
 
 /// The layers of a figure as text: names of all layers, or changes to the default.
@@ -209,7 +225,7 @@ pub(in crate::app) struct FigureOptions {
     /// h, angles, ellipses, scale; or changes to the default (--layers=+h,-letters)
     #[arg(long, value_name = "NAMES", allow_hyphen_values = true)]
     pub layers: Option<LayerWords>,
-    /// Draw a histogram instead of the mesh
+    /// Draw a plot instead of the mesh
     #[arg(long, value_name = "WHAT")]
     pub plot: Option<Plot>,
     /// Draw only a part: its centre and its height in units of the case
@@ -228,7 +244,11 @@ pub(in crate::app) struct FigureOptions {
     /// Write below the mesh what the last step did, in a sentence
     #[arg(long, value_name = "YES", num_args = 0..=1, require_equals = true, default_missing_value = "true")]
     pub captions: Option<bool>,
-    /// Frames side by side in a strip [default: at most 4, in rows of equal length]
+    /// Draw the states as a grid on one page, each with its step and the number of quadrilaterals
+    #[arg(long, value_name = "YES", num_args = 0..=1, require_equals = true, default_missing_value = "true")]
+    pub contact_sheet: Option<bool>,
+    /// Frames side by side in a strip, or on a contact sheet [default: at most 4, in rows of equal length; on a contact
+    /// sheet as many as make a page of the shape of paper]
     #[arg(long, value_name = "NUMBER", value_parser = clap::value_parser!(u32).range(1..=26))]
     pub columns: Option<u32>,
 }
@@ -244,7 +264,6 @@ struct Words {
 impl FigureOptions {
     /// The options as command-line arguments.
     pub fn words(&self) -> Vec<String> {
-        let plots = |plot| if plot == Plot::Lengths { "lengths" } else { "angles" };
         let part = |PartWords(part): PartWords| format!("{},{},{}", part.centre.x, part.centre.y, part.height);
         let words = [
             self.size.map(|size| format!("--size={size}")),
@@ -254,12 +273,13 @@ impl FigureOptions {
             self.ink.map(|ink| format!("--ink={}", ink.name())),
             self.transparent.map(|yes| format!("--transparent={yes}")),
             self.layers.as_ref().map(|layers| format!("--layers={}", layers.0)),
-            self.plot.map(|plot| format!("--plot={}", plots(plot))),
+            self.plot.map(|plot| format!("--plot={}", plot.name())),
             self.part.map(|words| format!("--part={}", part(words))),
             self.view.map(|side| format!("--view={side}")),
             self.hidden.map(|hidden| format!("--hidden={}", hidden.name())),
             self.parametric.map(|yes| format!("--parametric={yes}")),
             self.captions.map(|yes| format!("--captions={yes}")),
+            self.contact_sheet.map(|yes| format!("--contact-sheet={yes}")),
             self.columns.map(|columns| format!("--columns={columns}")),
         ];
         words.into_iter().flatten().collect()
@@ -297,6 +317,7 @@ impl FigureOptions {
             hidden,
             parametric,
             captions,
+            contact_sheet,
             columns
         ))
     }
@@ -314,6 +335,11 @@ impl FigureOptions {
             hidden: self.hidden.unwrap_or_default(),
             parametric: self.parametric.unwrap_or(false),
         }
+    }
+
+    /// Whether several states, or one in the manner of several, are drawn on one page.
+    pub fn is_grid(&self, states: usize) -> bool {
+        states > 1 || self.contact_sheet == Some(true)
     }
 
     /// Dots per inch.
@@ -340,6 +366,18 @@ impl FigureOptions {
         let usual = pixel.map_or(Weights::PAPER, Weights::of_pixels);
         let size = self.font_size.map(|size| size * pixel.unwrap_or(1.0));
         Weights { line: usual.line * self.line_scale.unwrap_or(1.0), text: size.map_or(usual.text, |size| size / NOTE) }
+    }
+
+    /// Refuses what does not fit so many states of a run in one figure.
+    ///
+    /// # Errors
+    /// Several states in a plot, or on a contact sheet; captions.
+    pub fn check(&self, states: usize) -> Result<(), Fault> {
+        let is_grid = self.is_grid(states);
+        if self.plot.is_some() && is_grid {
+            return Err(Fault::new("A plot shows one state").at("--plot").remedy("Name one stop with --at"));
+        }
+        self.check_captions(!is_grid && self.plot.is_none())
     }
 
     /// Refuses captions where a figure does not show one state of a run.
@@ -391,6 +429,9 @@ mod tests {
             "--view=x --hidden=faint",
             "--size=640x480 --line-scale=1.5 --font-size=14",
             "--ink=dark --captions=true --parametric=true",
+            "--plot=timeline",
+            "--plot=decision",
+            "--contact-sheet=true --columns=5",
         ] {
             let words: Vec<String> = line.split_whitespace().map(str::to_owned).collect();
             let options = FigureOptions::from_words(&words).unwrap();

@@ -7,6 +7,7 @@ use clap::{Args, Parser, ValueEnum};
 
 use crate::app::command_line::{Overrides, Source};
 use crate::app::figure::FigureOptions;
+use crate::app::figure::every::Every;
 use crate::app::input::{Until, until};
 use crate::app::output::Target;
 use crate::core::convert::Stop;
@@ -45,32 +46,6 @@ impl AnimateArguments {
     pub fn source(&self) -> Source {
         let AnimateArguments { input, sol, overrides, quiet, .. } = self;
         Source { input: input.clone(), from: None, sol: sol.clone(), overrides: overrides.clone(), quiet: *quiet }
-    }
-}
-
-/// What lies between two frames.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::app) enum Every {
-    /// So many quadrilaterals.
-    Quads(u64),
-    /// So many steps.
-    Steps(u64),
-}
-
-impl FromStr for Every {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Every, String> {
-        let usage = || "write a number of quadrilaterals (5 or nq=5) or of steps (step=20), quad or event".to_owned();
-        let number = |text: &str| text.parse().ok().filter(|n| *n > 0).ok_or_else(usage);
-        match (text, text.split_once('=')) {
-            ("quad", _) => Ok(Every::Quads(1)),
-            ("event", _) => Ok(Every::Steps(1)),
-            (_, Some(("nq", quads))) => number(quads).map(Every::Quads),
-            (_, Some(("step", steps))) => number(steps).map(Every::Steps),
-            (quads, None) => number(quads).map(Every::Quads),
-            _ => Err(usage()),
-        }
     }
 }
 
@@ -176,14 +151,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn distances_and_loops_are_read() {
-        let every = |text: &str| text.parse::<Every>().ok();
-        assert_eq!(["5", "nq=5"].map(every), [Some(Every::Quads(5)); 2]);
-        assert_eq!(
-            ["quad", "event", "step=20"].map(every),
-            [Some(Every::Quads(1)), Some(Every::Steps(1)), Some(Every::Steps(20))]
-        );
-        assert_eq!(["0", "-1", "", "quads", "step=", "step=0", "h=3"].map(every), [None; 7]);
+    fn loops_are_read() {
         let plays = |text: &str| text.parse::<Plays>().ok().map(|plays| plays.0);
         assert_eq!(["forever", "once", "3"].map(plays), [Some(None), Some(Some(1)), Some(Some(3))]);
         assert_eq!(["0", "70000", "twice"].map(plays), [None; 3]);

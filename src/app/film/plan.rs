@@ -3,13 +3,13 @@
 
 use glam::DVec2;
 
-use super::options::{Every, FilmCamera, FilmOptions};
+use super::options::{FilmCamera, FilmOptions};
 use crate::app::figure::FigureOptions;
+use crate::app::figure::every::{MOST_FRAMES, Next, too_many};
 use crate::app::input::Until;
 use crate::app::work::{FigureFrame, LastStep, Walked};
-use crate::core::convert::{Converter, Phase, Stop};
+use crate::core::convert::{Converter, Phase};
 use crate::core::fault::Fault;
-use crate::core::kernel::number::grouped;
 use crate::core::mesh::{Mesh, Names, NodeId};
 use crate::core::prepare::Background;
 use crate::core::progress::Watch;
@@ -20,8 +20,6 @@ use crate::render::look::Look;
 use crate::render::orthographic::{self, View};
 use crate::render::scene::Decision;
 
-/// The largest number of frames.
-const MOST_FRAMES: usize = 20_000;
 /// At most twice this many frames are kept as samples of the colours.
 const SAMPLES: usize = 12;
 
@@ -85,12 +83,7 @@ impl Plan {
             kept.offer(plan.shots.len(), || last.frame(c, &look, None));
             plan.shots.push(Shot { step: c.counts.steps, followed: followed.now });
             if plan.shots.len() > MOST_FRAMES {
-                return Err(Fault::new(format!(
-                    "The film would have more than {} frames",
-                    grouped(MOST_FRAMES as u64)
-                ))
-                .at("--every")
-                .remedy("Take fewer, such as --every 20"));
+                return Err(too_many("The film", MOST_FRAMES));
             }
             Ok(())
         };
@@ -113,51 +106,6 @@ impl Plan {
         }
         plan.samples = kept.frames;
         Ok(plan)
-    }
-}
-
-/// The next state that is a frame.
-struct Next {
-    every: Every,
-    /// The quadrilaterals that stand at the first frame.
-    origin: u64,
-    stop: Stop,
-    /// The step of the last frame.
-    noted: u64,
-}
-
-impl Next {
-    /// After the first frame.
-    fn new(converter: &Converter<'_>, every: Every) -> Next {
-        let (origin, noted) = (converter.standing(), converter.counts.steps);
-        let mut next = Next { every, origin, stop: Stop::Step(noted), noted };
-        next.advance(converter);
-        next
-    }
-
-    fn advance(&mut self, converter: &Converter<'_>) {
-        self.noted = converter.counts.steps;
-        self.stop = match self.every {
-            Every::Steps(n) => Stop::Step(self.noted.saturating_add(n)),
-            Every::Quads(n) => {
-                let done = converter.standing().saturating_sub(self.origin) / n;
-                Stop::Quads((done + 1).saturating_mul(n).saturating_add(self.origin))
-            }
-        };
-    }
-
-    /// Whether a state is a frame; then the next one is sought from there on.
-    fn is_reached(&mut self, converter: &Converter<'_>) -> bool {
-        let reached = self.stop.is_reached(converter);
-        if reached {
-            self.advance(converter);
-        }
-        reached
-    }
-
-    /// Whether a state was the last frame.
-    fn is_noted(&self, converter: &Converter<'_>) -> bool {
-        self.noted == converter.counts.steps
     }
 }
 

@@ -74,8 +74,19 @@ worded! {
         Lengths = "edge lengths (fig. 23)",
         /// Angles of the current state.
         Angles = "angles (fig. 24)",
+        /// The run over time.
+        Timeline = "the timeline",
+        /// What the last step decided.
+        Decision = "the decision of this step",
         /// The conversion, from one state to the next.
         Film = "the conversion, as a film",
+    }
+}
+
+impl Content {
+    /// Whether it is a plot, and not a picture of meshes.
+    pub fn is_plot(self) -> bool {
+        matches!(self, Content::Lengths | Content::Angles | Content::Timeline | Content::Decision)
     }
 }
 
@@ -177,6 +188,8 @@ impl FigureForm {
         let plot = match self.content {
             Content::Lengths => Some(figure::Plot::Lengths),
             Content::Angles => Some(figure::Plot::Angles),
+            Content::Timeline => Some(figure::Plot::Timeline),
+            Content::Decision => Some(figure::Plot::Decision),
             _ => None,
         };
         Ok(FigureOptions {
@@ -193,6 +206,7 @@ impl FigureForm {
             hidden: view.map(|view| view.1).filter(|hidden| *hidden != HiddenLines::Off),
             parametric: None,
             captions: None,
+            contact_sheet: None,
             columns: None,
         })
     }
@@ -252,6 +266,8 @@ pub fn stem(state: &State) -> String {
         ("", Content::State) => format!("{case}-step-{step}"),
         ("", Content::Lengths) => format!("{case}-step-{step}-lengths"),
         ("", Content::Angles) => format!("{case}-step-{step}-angles"),
+        ("", Content::Timeline) => format!("{case}-step-{step}-timeline"),
+        ("", Content::Decision) => format!("{case}-step-{step}-decision"),
         ("", Content::Bookmarks | Content::Stops) => format!("{case}-strip"),
         ("", Content::Film) => format!("{case}-film"),
         (name, _) => name.to_owned(),
@@ -270,7 +286,12 @@ fn maker(state: &State) -> Result<Option<Maker>, Fault> {
         return Ok(None);
     };
     let options = options(state, &moment, form.in_view)?;
-    let wanted = if form.is_strip() { Some(form.wanted(&state.document().bookmarks)?) } else { None };
+    let wanted = match form.content {
+        Content::Bookmarks | Content::Stops => Some(form.wanted(&state.document().bookmarks)?),
+        // They are of the whole run.
+        Content::Timeline | Content::Decision => Some(vec![Wanted::at(Some(Stop::Step(moment.step)))]),
+        _ => None,
+    };
     Ok(Some(Box::new(move || match wanted {
         Some(wanted) => Ok(figure::make(&current, &wanted, &options, true, &mut Nobody)?.0),
         None => of_state(&moment, &opened, &current, &options),

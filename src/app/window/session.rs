@@ -21,13 +21,14 @@ pub use worker::Stops;
 use super::import::ImportOptions;
 use super::state::Progress;
 use crate::app::progress;
-use crate::core::convert::{Event, EventKind, Why};
+use crate::core::convert::{Event, Why};
 use crate::core::fault::Fault;
 use crate::core::lesson::{Decision, Lesson, Scene};
 use crate::core::mesh::{ElementId, NodeId};
 use crate::core::prepare::Background;
 use crate::core::progress::{Cancel, Stage, Watch};
 use crate::core::question::{Answer, Asked, Drawn, Hint, Judged, Series};
+use crate::core::run::timeline::Tracked;
 use crate::core::run::{
     Born, Chain, ChangeLog, Condition, Edit, Recorder, Run, Sample, SegmentFacts, Stretch, Watched,
 };
@@ -132,23 +133,6 @@ pub struct Opened {
     /// The run as it was opened.
     pub run: Run,
     pub background: Arc<Background>,
-}
-
-/// The record of a step.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Tracked {
-    /// What the step did.
-    pub kind: EventKind,
-    /// How many quadrilaterals there are after it.
-    pub standing: u32,
-    /// Segments of the front after it.
-    pub front: u32,
-    /// Loops of the front, and how many of them are odd.
-    pub loops: [u16; 2],
-    /// Live triangles after it.
-    pub live: u32,
-    /// The quadrilateral that it formed, with its quality.
-    pub formed: Option<(ElementId, f64)>,
 }
 
 /// Why a segment was or was not chosen.

@@ -8,7 +8,7 @@ use crate::core::progress::Stage;
 use crate::render::scene::Outlined;
 
 pub use crate::core::kernel::number::{UNDEFINED, counted, decimals, degrees, fixed, grouped, size};
-pub use crate::core::run::explain::{capital, edge, event, passed, segment, why_rolled_back as why};
+pub use crate::core::run::explain::{capital, edge, event, segment, why_rolled_back as why};
 
 /// The progress of some work.
 pub fn progress(progress: &Progress) -> String {

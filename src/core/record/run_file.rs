@@ -36,6 +36,7 @@ mod inputs;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
+pub use figure::MOST_STATES;
 pub use inputs::inputs;
 use toml::de::DeTable;
 

@@ -16,6 +16,7 @@ mod formation;
 mod about;
 mod next;
 mod narration;
+mod tables;
 
 pub use about::{about, angles_of_swap};
 pub use event::{attempt, event, why_rolled_back};
@@ -25,6 +26,7 @@ pub use numbers::{angles_apart, apart, capital, edge, plain, segment};
 pub use segment::{SegmentFacts, Verdict};
 pub use selecting::{SelectedBase, Selecting};
 pub use side::{corner, passed, second, side_margins, side_rule};
+pub use tables::{Entry, FRONT, Table, candidates, front, front_row};
 pub use why::{key_name, key_text, margins};
 
 use glam::DVec3;

@@ -11,7 +11,7 @@
 //! | later decisions that differ although the fronts are the same there | [`compare::differences`] |
 //! | running ahead on another thread | [`Recorder`], which [`History::lend`] lends |
 //! | one event per step, the number of quadrilaterals, where to go next | [`Log`] |
-//! | invariants and statistics along a run, lanes of its work | [`Sample`], [`timeline`] |
+//! | invariants and statistics along a run, lanes of events and curves | [`Sample`], [`timeline`] |
 //! | the step that made each quadrilateral, without a history | [`Births`] |
 //! | the step that changed each node and element last | [`LastChanges`], [`ChangeLog`] |
 //! | elements and nodes with their measures, filtered and sorted | [`ElementTable`], [`NodeTable`] |

@@ -1,11 +1,13 @@
-//! Pictures as vectors, and as pixels rendered from them: a `sheet`, a `histogram` or a `heat_map` is drawn on a
-//! `page`, which is written as `svg`, `pdf` or `png`.
+//! Pictures as vectors, and as pixels rendered from them: a `sheet`, a `histogram`, a `heat_map`, a `timeline` or a
+//! `decision` is drawn on a `page`, which is written as `svg`, `pdf` or `png`.
 
 pub mod weights;
 pub mod page;
 pub mod sheet;
 pub mod histogram;
 pub mod heat_map;
+pub mod timeline;
+pub mod decision;
 pub mod svg;
 #[cfg(feature = "cli")]
 pub mod pdf;

@@ -10,7 +10,7 @@ pub use self::caption::Caption;
 
 use self::frame::PageFrame;
 use self::marks::Marks;
-use super::page::{Anchor, Cap, Coat, Page, Path, Stroke};
+use super::page::{Anchor, Cap, Coat, Page, Path, Stroke, width};
 use super::weights::Weights;
 use crate::render::look::{FigurePart, Layer, Look};
 use crate::render::palette::{CROWDED, THIN, figure};
@@ -30,6 +30,8 @@ const GAP: f64 = 3.0 * MILLIMETRE;
 
 /// Default number of frames side by side.
 const COLUMNS: usize = 4;
+/// The height of a page of paper for its width.
+const PAPER: f64 = std::f64::consts::SQRT_2;
 /// A frame narrower than this on paper has no room for caption and scale bar in one row.
 const NARROW: f64 = 95.0;
 
@@ -90,15 +92,49 @@ pub fn page(picture: &Picture, sheet: &Sheet<'_>) -> Page {
 /// Lays pictures out side by side in equal frames of the same scale, each with a letter and its title below, and one
 /// scale bar for all.
 pub fn strip(pictures: &[Picture], sheet: &Sheet<'_>) -> Page {
-    let (look, label) = (&sheet.look, sheet.weights.label());
+    let titles = pictures.iter().enumerate().map(|(k, picture)| format!("({}) {}", letter(k), picture.title));
+    let titles = Titles { texts: titles.collect(), size: sheet.weights.label(), may_wrap: false };
+    grid(pictures, &titles, sheet.columns.unwrap_or(COLUMNS), sheet)
+}
+
+/// Lays pictures out as a grid, each with its title below. Unless the sheet says how many stand side by side, the page
+/// has about the shape of paper, and the titles have room in one row.
+pub fn contact_sheet(pictures: &[Picture], sheet: &Sheet<'_>) -> Page {
+    let size = sheet.weights.note();
+    let texts: Vec<String> = pictures.iter().map(|picture| picture.title.clone()).collect();
+    let widest = texts.iter().map(|text| width(text, size)).fold(size, f64::max) / caption::SHARE;
+    let usual = (pictures.len() as f64 / PAPER).sqrt().ceil().min(((sheet.width + GAP) / (widest + GAP)).floor());
+    let columns = sheet.columns.unwrap_or(usual.max(1.0) as usize);
+    grid(pictures, &Titles { texts, size, may_wrap: true }, columns, sheet)
+}
+
+/// The titles of the frames of a grid.
+struct Titles {
+    texts: Vec<String>,
+    size: f64,
+    /// Whether they may take several rows.
+    may_wrap: bool,
+}
+
+impl Titles {
+    /// The rows of one of them below a frame of some width.
+    fn rows(&self, k: usize, room: f64) -> Vec<&str> {
+        let text = self.texts.get(k).map_or("", String::as_str);
+        if self.may_wrap { Caption { text, size: self.size, rows: 0 }.wrapped(room) } else { vec![text] }
+    }
+}
+
+fn grid(pictures: &[Picture], titles: &Titles, columns: usize, sheet: &Sheet<'_>) -> Page {
+    let (look, size) = (&sheet.look, titles.size);
     let count = pictures.len().max(1);
-    let rows = count.div_ceil(sheet.columns.unwrap_or(COLUMNS).clamp(1, count));
+    let rows = count.div_ceil(columns.clamp(1, count));
     let columns = count.div_ceil(rows);
     let each = (sheet.width - GAP * (columns - 1) as f64) / columns as f64;
-    let caption = 1.9 * label;
+    let most = (0..pictures.len()).map(|k| titles.rows(k, each).len()).max().unwrap_or(1).max(1);
+    let caption = 1.9 * size + caption::ROW * size * (most - 1) as f64;
     let has_bar = look.layers.has(Layer::Scale);
     let is_narrow = each < NARROW * sheet.weights.text;
-    let own_row = if has_bar && is_narrow && count == rows * columns { 1.5 * label } else { 0.0 };
+    let own_row = if has_bar && is_narrow && count == rows * columns { 1.5 * size } else { 0.0 };
     let inner = sheet.height.map(|h| (h - own_row - GAP * (rows - 1) as f64) / rows as f64 - caption);
     let union = |a: [DVec2; 2], b: [DVec2; 2]| [a[0].min(b[0]), a[1].max(b[1])];
     let part = look.part.map(|part| part_bounds(part, each, inner));
@@ -111,11 +147,13 @@ pub fn strip(pictures: &[Picture], sheet: &Sheet<'_>) -> Page {
         let left_top = DVec2::new((k % columns) as f64 * (each + GAP), (k / columns) as f64 * (row + GAP));
         let frame = first.moved(left_top);
         draw(&mut page, picture, &frame, look);
-        let at = left_top + DVec2::new(1.0, first.size.y + 1.25 * label);
-        page.text(at, label, Anchor::Start, &format!("({}) {}", letter(k), picture.title));
+        for (k, text) in titles.rows(k, each).into_iter().enumerate() {
+            let below = first.size.y + 1.25 * size + caption::ROW * size * k as f64;
+            page.text(left_top + DVec2::new(1.0, below), size, Anchor::Start, text);
+        }
     }
     if has_bar {
-        let y = height - caption + 1.25 * label - if own_row > 0.0 { 0.4 * label } else { 0.0 };
+        let y = if own_row > 0.0 { height - 1.05 * size } else { height - caption + 1.25 * size };
         scale_bar(&mut page, &first, DVec2::new(sheet.width - 1.0, y), look);
     }
     page

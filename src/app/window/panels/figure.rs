@@ -134,7 +134,7 @@ fn form(ui: &mut Ui, window: &State, commands: &mut Vec<Command>, palette: &Pale
         });
         row("name", &mut |ui| field(ui, &mut figure.name, "Name of the figure", "from case and step"));
     });
-    if !matches!(figure.content, Content::Lengths | Content::Angles) {
+    if !figure.content.is_plot() {
         ui.add_space(6.0);
         Grid::new("figure layers").num_columns(4).spacing(Vec2::new(10.0, 3.0)).show(ui, |ui| {
             for (k, layer) in Layer::ALL.into_iter().enumerate() {

@@ -14,8 +14,9 @@ use crate::app::window::theme::{self, ink};
 use crate::app::window::words;
 use crate::core::case::Selection;
 use crate::core::front::Segment;
+use crate::core::run::FrontTable;
+use crate::core::run::explain::{self, FRONT};
 use crate::core::run::front_table::Row;
-use crate::core::run::{FrontTable, explain};
 use crate::render::palette::Palette;
 use crate::render::scene::{Decision, Outlined};
 
@@ -58,17 +59,17 @@ impl Default for FrontState {
 }
 
 /// Columns with their heads, widths and tooltips.
-const COLUMNS: [(FrontColumn, &str, f32, &str); 10] = [
-    (FrontColumn::Rank, "#", 28.0, "Rank: the order in which the rules choose"),
-    (FrontColumn::Nodes, "A → B", 71.0, "Nodes of the segment; live triangles lie to its left"),
-    (FrontColumn::Class, "cl", 26.0, "Class of table 1"),
-    (FrontColumn::HValue, "H", 53.0, "H-value, eq. 6, in units of the case"),
-    (FrontColumn::Length, "len", 31.0, "Length in the metric"),
-    (FrontColumn::Key, "key", 54.0, "Key by which segments of a class are ordered"),
-    (FrontColumn::ThetaA, "θA °", 39.0, "Frontal angle at A, degrees, in the metric of A"),
-    (FrontColumn::ThetaB, "θB °", 39.0, "Frontal angle at B, degrees, in the metric of B"),
-    (FrontColumn::Level, "lv", 19.0, "Level: rows of the front from the boundary"),
-    (FrontColumn::Loop, "lp", 17.0, "Loop of the front"),
+const COLUMNS: [(FrontColumn, &str, f32, &str); FRONT.len()] = [
+    (FrontColumn::Rank, FRONT[0], 28.0, "Rank: the order in which the rules choose"),
+    (FrontColumn::Nodes, FRONT[1], 71.0, "Nodes of the segment; live triangles lie to its left"),
+    (FrontColumn::Class, FRONT[2], 26.0, "Class of table 1"),
+    (FrontColumn::HValue, FRONT[3], 53.0, "H-value, eq. 6, in units of the case"),
+    (FrontColumn::Length, FRONT[4], 31.0, "Length in the metric"),
+    (FrontColumn::Key, FRONT[5], 54.0, "Key by which segments of a class are ordered"),
+    (FrontColumn::ThetaA, FRONT[6], 39.0, "Frontal angle at A, degrees, in the metric of A"),
+    (FrontColumn::ThetaB, FRONT[7], 39.0, "Frontal angle at B, degrees, in the metric of B"),
+    (FrontColumn::Level, FRONT[8], 19.0, "Level: rows of the front from the boundary"),
+    (FrontColumn::Loop, FRONT[9], 17.0, "Loop of the front"),
 ];
 
 /// Shows the panel.
@@ -219,19 +220,10 @@ fn table(
             row.set_selected(is_picked);
             row.set_hovered(hovered.is_some_and(|e| is(segment, e)));
             let its_row = &moment.rows[place];
-            let is_ranked = !its_row.is_deferred && selection.is_of_face(its_row);
-            let texts = [
-                if is_ranked { rank.to_string() } else { words::UNDEFINED.to_owned() },
-                words::segment([segment.a, segment.b]),
-                String::new(),
-                words::fixed(segment.h_value, decimals),
-                words::fixed(segment.length_metric, 2),
-                explain::key_text(its_row, selection.parameters()),
-                words::degrees(segment.theta[0]),
-                words::degrees(segment.theta[1]),
-                segment.level.to_string(),
-                if one_loop { String::new() } else { (moment.rows[place].front_loop + 1).to_string() },
-            ];
+            let mut texts = explain::front_row(selection, its_row, rank, decimals);
+            if one_loop {
+                texts[FrontColumn::Loop as usize].clear();
+            }
             for (k, text) in texts.into_iter().enumerate() {
                 row.col(|ui| {
                     if is_base {

@@ -12,8 +12,9 @@ use crate::app::window::session::{Goal, Verdict};
 use crate::app::window::state::{Pair, State};
 use crate::app::window::theme::{self, ink};
 use crate::app::window::words;
+use crate::core::run::timeline::CurveKind;
 use crate::render::palette::{Palette, Rgba};
-use columns::{Columns, Curve, CurveKind, Lane};
+use columns::{Columns, Curve, Row};
 
 /// The label column and the counts, in points.
 const LABELS: f32 = 118.0;
@@ -69,7 +70,7 @@ pub fn show(ui: &mut Ui, window: &State, local: &mut TimelineState, commands: &m
     if let Some(other) = other {
         local.others.update(other, None, axis.span, plot.width());
         if window.active_run() == Which::B {
-            lanes += local.others.lanes().len() as f32 * (LANE + GAP) + GAP;
+            lanes += local.others.rows().len() as f32 * (LANE + GAP) + GAP;
         }
     }
     let step = seek(&response, &axis, lanes, state, local, moment.step);
@@ -85,7 +86,7 @@ pub fn show(ui: &mut Ui, window: &State, local: &mut TimelineState, commands: &m
         let (shown, columns) =
             if which == window.active_run() { (state, &*columns) } else { (window.of(which), &*others) };
         let top = y;
-        for lane in columns.lanes() {
+        for lane in columns.rows() {
             if !fits(y, LANE) {
                 break;
             }
@@ -171,7 +172,7 @@ fn seek(
             .map(|mark| mark.step)
             .chain(stops(state).flat_map(|hits| within(hits, reach)));
         marks.min_by(|a, b| away(a).total_cmp(&away(b)))
-    } else if let Some(lane) = local.columns.lanes().get(row as usize).filter(|_| response.clicked() && row >= 0.0) {
+    } else if let Some(lane) = local.columns.rows().get(row as usize).filter(|_| response.clicked() && row >= 0.0) {
         let steps = (reach[0].max(1)..=reach[1]).filter(|step| {
             state.run().track.get(*step as usize - 1).is_some_and(|tracked| lane.kinds.contains(&tracked.kind))
         });
@@ -231,7 +232,7 @@ fn hovered(axis: &Axis, state: &State, columns: &Columns, at: Pos2) -> String {
 }
 
 /// The name of a row with several kinds is a button that gives each kind its own row, and back.
-fn label_button(ui: &Ui, axis: &Axis, lane: &Lane, y: f32) -> Option<usize> {
+fn label_button(ui: &Ui, axis: &Axis, lane: &Row, y: f32) -> Option<usize> {
     let group = lane.group?;
     let rect =
         Rect::from_min_max(Pos2::new(axis.plot.left() - LABELS + 4.0, y), Pos2::new(axis.plot.left() - 8.0, y + LANE));
@@ -357,7 +358,7 @@ impl Drawing<'_> {
     }
 
     /// One tick for each event, or a density strip if there are several in many columns.
-    fn lane(&self, lane: &Lane, y: f32, steps: usize) {
+    fn lane(&self, lane: &Row, y: f32, steps: usize) {
         let plot = self.axis.plot;
         let end = self.axis.x(steps as f64).clamp(plot.left(), plot.right());
         let ground = Rect::from_min_max(Pos2::new(plot.left(), y), Pos2::new(end, y + LANE));

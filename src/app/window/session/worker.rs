@@ -10,7 +10,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, Sender, TryRecvError};
 use std::time::Instant;
 
-use super::{Ask, Direction, Explained, Goal, Opened, Past, SessionNews, ToldChain, Tracked, Transcript, Voice};
+use super::{Ask, Direction, Explained, Goal, Opened, Past, SessionNews, ToldChain, Transcript, Voice};
 use crate::core::convert::{Event, Why};
 use crate::core::fault::Fault;
 use crate::core::lesson::Lesson;
@@ -19,6 +19,7 @@ use crate::core::prepare::Background;
 use crate::core::question::{Drawn, Series};
 use crate::core::run::copies::Since;
 use crate::core::run::history::BUDGET;
+use crate::core::run::timeline::Tracked;
 use crate::core::run::{
     Condition, Copies, Edit, History, Recorder, Run, Sample, Stretch, Watched, WorstQuality, breakpoint,
 };
@@ -347,21 +348,7 @@ impl Worker {
     fn tell_track(&mut self) {
         let log = self.history.log();
         let end = self.history.end().is_some();
-        let steps = (self.tracked + 1..=log.known()).filter_map(|step| {
-            let formed = match log.event(step) {
-                Some(Event::Formed { element, quality, .. }) => Some((*element, *quality)),
-                _ => None,
-            };
-            let front = log.front(step);
-            Some(Tracked {
-                kind: log.kind(step)?,
-                standing: log.nq(step) as u32,
-                front: front.segments,
-                loops: [front.loops, front.odd].map(|count| count.min(u16::MAX.into()) as u16),
-                live: front.live,
-                formed,
-            })
-        });
+        let steps = (self.tracked + 1..=log.known()).filter_map(|step| Tracked::of(log, step));
         // The first sample is that of step 0.
         let fresh = |sample: &&Sample| sample.step > self.tracked || self.tracked == 0;
         let samples = log.samples().iter().filter(fresh).copied().collect();

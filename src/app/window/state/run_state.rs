@@ -10,12 +10,11 @@ use crate::app::window::files::{Dialog, Watcher, Writing};
 use crate::app::window::import::Import;
 use crate::app::window::lists::Lists;
 use crate::app::window::measure::Measuring;
-use crate::app::window::session::{
-    Explained, Moment, Opened, Past, Session, Source, ToldChain, Tracked, Transcript, Verdict,
-};
+use crate::app::window::session::{Explained, Moment, Opened, Past, Session, Source, ToldChain, Transcript, Verdict};
 use crate::core::convert::Phase;
 use crate::core::mesh::{ElementId, NodeId};
 use crate::core::run::copies::Since;
+use crate::core::run::timeline::Tracked;
 use crate::core::run::{Born, ChangeLog, Sample, ShownState, Sought, Watched};
 use crate::render::scene::Outlined;
 

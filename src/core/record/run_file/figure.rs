@@ -7,7 +7,7 @@ use crate::core::fault::Fault;
 use crate::core::run::{Shown, ShownState};
 
 /// Maximum number of states in a figure.
-const MOST_STATES: usize = 1000;
+pub const MOST_STATES: usize = 1000;
 
 pub(super) fn shown(table: &Table<'_>) -> Result<Shown, Fault> {
     table.only(&["drawn", "state"])?;

@@ -5,10 +5,10 @@ use glam::DVec2;
 use crate::render::vector::page::{Anchor, Page, width};
 
 /// The distance of the rows, and the room above and below all of them, in font sizes.
-const ROW: f64 = 1.3;
+pub(super) const ROW: f64 = 1.3;
 const AROUND: f64 = 0.5;
 /// The share of the width of the page that a row takes at most. Widths of texts are estimates.
-const SHARE: f64 = 0.96;
+pub(super) const SHARE: f64 = 0.96;
 
 /// A caption, broken into rows as wide as the page.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -11,9 +11,9 @@ use crate::app::window::state::State;
 use crate::app::window::theme::{self, ink};
 use crate::app::window::{icons, words};
 use crate::core::case::{Selection, SelectionWindow};
-use crate::core::convert::{Candidate, Candidates, Event};
+use crate::core::convert::{Candidates, Event};
 use crate::core::front::{Segment, Side};
-use crate::core::run::explain;
+use crate::core::run::explain::{self, Entry};
 use crate::render::palette::Palette;
 use crate::render::scene::{Decision, Outlined};
 
@@ -142,52 +142,29 @@ pub(super) fn candidates(
     commands: &mut Vec<Command>,
     palette: &Palette,
 ) {
-    let (side, end, from) = match tried.side {
-        Side::Left => ("Left", "A", s.a),
-        Side::Right => ("Right", "B", s.b),
-    };
-    let swaps = tried.edges.iter().filter(|edge| edge.swap.is_some()).count();
-    let count = |n: usize, one: &str| match n {
-        0 => format!("no {one}"),
-        1 => format!("1 {one}"),
-        _ => format!("{n} {one}s"),
-    };
-    let edges = tried.edges.len() - swaps;
-    let told = format!("{} tried, {}", count(edges, "edge"), count(swaps, "swap"));
-    if !section(ui, &format!("{side} side at {end}"), &told, palette) {
+    let from = [s.a, s.b][tried.side.index()];
+    let told = explain::candidates(tried, from);
+    if !section(ui, &told.title, &told.counts, palette) {
         return;
     }
     sentence(ui, &explain::side_rule(tried), palette.text, palette);
     if let Some(margins) = explain::side_margins(tried) {
         sentence(ui, &margins, palette.weak, palette);
     }
-    // The edge that was taken comes first, then all others as they are met from the base.
-    let (mut all, others): (Vec<&Candidate>, Vec<_>) = tried.edges.iter().partition(|edge| edge.passed.is_none());
-    all.extend(others);
-    let row = |(k, candidate): (usize, &&Candidate)| {
-        let verdict = match candidate.passed {
-            None => format!("{} chosen", icons::CHECK),
-            Some(passed) => words::passed(passed, candidate, tried),
-        };
-        let texts = vec![
-            words::edge([from, candidate.node]),
-            words::degrees(candidate.angle),
-            words::degrees(candidate.deviation),
-            words::fixed(candidate.length, 2),
-            match candidate.swap {
-                None => verdict,
-                Some(across) => format!("swap {}: {verdict}", words::edge(across)),
-            },
-        ];
-        let (colour, ground) = match candidate.passed {
-            None => (palette.strong, Some(palette.accent_row)),
-            Some(_) => (palette.text, (k % 2 == 1).then_some(palette.stripe)),
+    let row = |(k, entry): (usize, &Entry)| {
+        let mut texts = entry.texts.clone();
+        let (colour, ground) = if entry.is_chosen {
+            texts.iter_mut().last().into_iter().for_each(|verdict| *verdict = format!("{} {verdict}", icons::CHECK));
+            (palette.strong, Some(palette.accent_row))
+        } else {
+            (palette.text, (k % 2 == 1).then_some(palette.stripe))
         };
         TableRow { texts, colour, ground }
     };
-    let rows: Vec<TableRow> = all.iter().enumerate().map(row).collect();
-    let shown = rows::table(ui, &["edge", "angle °", "off °", "length", "verdict"], &rows, Last::Words, palette);
-    for (response, candidate) in shown.into_iter().zip(all) {
+    let rows: Vec<TableRow> = told.entries.iter().enumerate().map(row).collect();
+    let head: Vec<&str> = told.head.iter().map(String::as_str).collect();
+    let shown = rows::table(ui, &head, &rows, Last::Words, palette);
+    for (response, candidate) in shown.into_iter().zip(&told.entries).map(|(r, entry)| (r, &tried.edges[entry.place])) {
         let there = moment.mesh.has_node(candidate.node) && moment.mesh.are_joined(from, candidate.node);
         let what = if there { Outlined::Edge([from, candidate.node]) } else { Outlined::Node(candidate.node) };
         stands_for(&response, what, commands);
