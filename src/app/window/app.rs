@@ -13,6 +13,7 @@ use super::files::{free_path, write_png};
 use super::graphics::{self, Lost};
 use super::layout::{Docks, Layout, Pane, TIMELINE_HEIGHTS};
 use super::panels::{self, PanelStates};
+use super::presentation::Chrome;
 use super::presses::{self, Presses};
 use super::session::Source;
 use super::settings::Settings;
@@ -142,8 +143,8 @@ impl App {
 
     fn keys(&self, context: &Context) -> Vec<Command> {
         let typing = context.egui_wants_keyboard_input();
-        let busy = self.state.run().is_busy();
-        let mut commands = context.input_mut(|input| presses::commands(&mut input.events, typing, busy));
+        let (busy, chrome) = (self.state.run().is_busy(), self.state.chrome());
+        let mut commands = context.input_mut(|input| presses::commands(&mut input.events, chrome, typing, busy));
         if commands.contains(&Command::Escape) && Popup::is_any_open(context) {
             // A menu with all its submenus.
             Popup::close_all(context);
@@ -254,13 +255,18 @@ impl App {
         // The panels show one of two runs; the first one stands for the window.
         let (window, state) = (&self.state, self.state.active());
         let (local, asked) = (&mut self.panels[window.active_run() as usize], &mut commands);
-        Panel::top("menus").frame(plain).exact_size(32.0).show(ui, |ui| panels::top::show(ui, window, asked, palette));
+        if window.chrome() == Chrome::Panels {
+            let menus = Panel::top("menus").frame(plain).exact_size(32.0);
+            menus.show(ui, |ui| panels::top::show(ui, window, asked, palette));
+        }
         let mut views = ui.available_rect_before_wrap();
         if window.run().import.is_some() {
             panels::import::show(ui, window, plain, asked, palette);
             egui::CentralPanel::default().frame(plain).show(ui, |ui| {
                 self.views[0].given(ui, window, asked, palette);
             });
+        } else if window.chrome() == Chrome::Presentation {
+            views = panels::presentation::show(ui, window, &mut self.views, plain, asked, palette);
         } else {
             // A window without room for the timeline must not change the height that the user has chosen.
             let height = &mut self.layout.timeline_height;

@@ -3,7 +3,8 @@
 
 use eframe::egui::{Event, Key, Modifiers};
 
-use super::command::{Command, keys};
+use super::command::{Command, keys, keys_in};
+use super::presentation::Chrome;
 
 /// The presses that wait for a later frame.
 #[derive(Default)]
@@ -35,8 +36,8 @@ impl Presses {
 /// Takes the presses of keys that stand for commands out of the events, and returns the commands in order. While one
 /// types, keys without Ctrl or Alt stand for themselves, except Escape. A key that is held does not run ahead of what
 /// is shown, so that nothing goes on when it is let go.
-pub fn commands(events: &mut Vec<Event>, is_typing: bool, is_busy: bool) -> Vec<Command> {
-    let known = keys();
+pub fn commands(events: &mut Vec<Event>, chrome: Chrome, is_typing: bool, is_busy: bool) -> Vec<Command> {
+    let known = keys_in(chrome);
     let (mut commands, mut repeated) = (Vec::new(), Vec::new());
     events.retain(|event| {
         let Event::Key { key: pressed, modifiers: held, pressed: true, repeat, .. } = event else { return true };
@@ -74,7 +75,8 @@ fn command_of(held: Modifiers, pressed: Key) -> Option<Command> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::window::session::Goal;
+    use crate::app::window::presentation::PresentationCommand;
+    use crate::app::window::session::{Direction, Goal};
 
     fn press(key: Key, modifiers: Modifiers) -> Event {
         Event::Key { key, physical_key: None, pressed: true, repeat: false, modifiers }
@@ -118,17 +120,31 @@ mod tests {
         };
         let [go, to_end] = [Goal::Quads(1), Goal::End].map(Command::Go);
         let mut events = vec![end.clone(), worst.clone(), right.clone(), right.clone(), text("x")];
-        let found = commands(&mut events, false, true);
+        let found = commands(&mut events, Chrome::Panels, false, true);
         assert_eq!(found, [to_end, Command::FindWorst, go.clone(), go.clone()]);
         assert_eq!(events, [text("x")]);
         // What is typed stays.
         let mut events = vec![right.clone(), worst, press(Key::Escape, Modifiers::NONE)];
-        assert_eq!(commands(&mut events, true, false), [Command::FindWorst, Command::Escape]);
+        assert_eq!(commands(&mut events, Chrome::Panels, true, false), [Command::FindWorst, Command::Escape]);
         assert_eq!(events, std::slice::from_ref(&right));
         // A key that is held counts once a frame, and not while a state is awaited.
         let mut events = vec![right, held.clone(), held.clone()];
-        assert_eq!(commands(&mut events.clone(), false, false), [go.clone(), go.clone()]);
-        assert_eq!(commands(&mut events, false, true), [go]);
+        assert_eq!(commands(&mut events.clone(), Chrome::Panels, false, false), [go.clone(), go.clone()]);
+        assert_eq!(commands(&mut events, Chrome::Panels, false, true), [go]);
+    }
+
+    #[test]
+    fn keys_of_clickers_are_commands_in_presentations_alone() {
+        let (none, b, page) = (Modifiers::NONE, Key::B, Key::PageDown);
+        let [switch, _, black] = PresentationCommand::ALL.map(Command::Presentation);
+        let next = Command::Go(Goal::Quads(1));
+        let f5 = [press(Key::F5, none), press(Key::F5, Modifiers::SHIFT), press(Key::F5, Modifiers::ALT)];
+        let pressed = [&f5[..], &[press(b, none), press(Key::Period, none), press(page, none)]].concat();
+        let back = Command::ToBreakpoint(Direction::Back);
+        let outside = [Command::ToBreakpoint(Direction::Forward), switch.clone(), back.clone(), next.clone()];
+        assert_eq!(commands(&mut pressed.clone(), Chrome::Panels, false, false), outside);
+        let inside = [switch.clone(), switch, back, black.clone(), black, next];
+        assert_eq!(commands(&mut pressed.clone(), Chrome::Presentation, false, false), inside);
     }
 
     #[test]

@@ -20,6 +20,7 @@ pub use workspace::{Breakpoint, Document, SurfaceStyle, SurfaceView, Watchpoint,
 
 use super::autosave::Marks;
 use super::film::FilmWork;
+use super::presentation::Chrome;
 use super::reducing::Reducing;
 use super::session::{Moment, Stops, Wake};
 use super::sweep::SweepWork;
@@ -103,6 +104,11 @@ impl State {
     /// The sweep of the window, once there is one.
     pub fn sweep(&self) -> Option<&SweepWork> {
         self.sweep.as_ref()
+    }
+
+    /// What is around the views. An import has the panels of its own.
+    pub fn chrome(&self) -> Chrome {
+        if self.run.import.is_some() { Chrome::Panels } else { self.view.chrome }
     }
 
     /// What holds for the frame at hand only.

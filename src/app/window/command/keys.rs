@@ -2,7 +2,8 @@
 
 use eframe::egui::{Key, Modifiers};
 
-use super::{Command, PairCommand};
+use super::{Command, PairCommand, PresentationCommand};
+use crate::app::window::presentation::Chrome;
 use crate::app::window::session::{Direction, Goal};
 use crate::app::window::view_layer::ViewLayer;
 use crate::core::kernel::worded::worded;
@@ -16,6 +17,7 @@ worded! {
         Views = "Views",
         Layers = "Layers",
         Files = "Files and changes",
+        Presentation = "Presentations",
         Window = "Window",
     }
 }
@@ -50,6 +52,7 @@ impl Purpose {
             | Command::Figures
             | Command::Undo
             | Command::Redo => Purpose::Files,
+            Command::Presentation(_) => Purpose::Presentation,
             _ => Purpose::Window,
         }
     }
@@ -58,7 +61,7 @@ impl Purpose {
 /// The keys by what they are for, each command once with all its keys: plain keys first, then those with Ctrl, Shift
 /// and Alt.
 pub fn groups() -> Vec<(Purpose, Vec<(String, Command)>)> {
-    let mut all = keys();
+    let mut all = keys_in(Chrome::Presentation);
     all.sort_by_key(|(held, ..)| (held.alt, held.shift, held.command));
     let mut groups = Purpose::ALL.map(|purpose| (purpose, Vec::new())).to_vec();
     for (held, key, command) in all {
@@ -103,6 +106,7 @@ pub fn keys() -> Vec<(Modifiers, Key, Command)> {
         (SHIFT, Key::D, Command::ToggleFollow),
         (CTRL, Key::ArrowRight, Command::Go(Goal::Steps(1))),
         (CTRL, Key::ArrowLeft, Command::Go(Goal::Steps(-1))),
+        (SHIFT, Key::F5, Command::Presentation(PresentationCommand::Switch)),
         (SHIFT, Key::ArrowRight, Command::Go(Goal::Quads(10))),
         (SHIFT, Key::ArrowLeft, Command::Go(Goal::Quads(-10))),
         (Modifiers::ALT, Key::F5, Command::ToBreakpoint(Direction::Back)),
@@ -121,6 +125,8 @@ pub fn keys() -> Vec<(Modifiers, Key, Command)> {
         (CTRL, Key::K, Command::Pair(PairCommand::Fork)),
         (NONE, Key::ArrowRight, Command::Go(Goal::Quads(1))),
         (NONE, Key::ArrowLeft, Command::Go(Goal::Quads(-1))),
+        (NONE, Key::PageDown, Command::Go(Goal::Quads(1))),
+        (NONE, Key::PageUp, Command::Go(Goal::Quads(-1))),
         (NONE, Key::F5, Command::ToBreakpoint(Direction::Forward)),
         (NONE, Key::F8, Command::Pair(PairCommand::SeekDifference(Direction::Forward))),
         (NONE, Key::Home, Command::Go(Goal::Step(0))),
@@ -140,6 +146,29 @@ pub fn keys() -> Vec<(Modifiers, Key, Command)> {
     let digits = [Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5, Key::Num6, Key::Num7, Key::Num8, Key::Num9];
     keys.extend(digits.into_iter().zip(ViewLayer::ALL).map(|(key, layer)| (NONE, key, Command::Layer(layer))));
     keys
+}
+
+/// Keys that mean something else in presentations, or nothing outside of them: those of clickers, which begin and end
+/// with F5.
+fn presentation_keys() -> Vec<(Modifiers, Key, Command)> {
+    [
+        (Key::F5, PresentationCommand::Switch),
+        (Key::S, PresentationCommand::Spotlight),
+        (Key::B, PresentationCommand::Black),
+        (Key::Period, PresentationCommand::Black),
+    ]
+    .map(|(key, command)| (NONE, key, Command::Presentation(command)))
+    .to_vec()
+}
+
+/// All keys and their commands where so much is around the views, in the order of [`keys`].
+pub fn keys_in(chrome: Chrome) -> Vec<(Modifiers, Key, Command)> {
+    let mut all = keys();
+    if chrome == Chrome::Presentation {
+        let bare = all.iter().position(|(held, ..)| held.is_none()).unwrap_or(all.len());
+        all.splice(bare..bare, presentation_keys());
+    }
+    all
 }
 
 fn key_name(key: Key) -> &'static str {

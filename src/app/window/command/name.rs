@@ -105,6 +105,7 @@ impl Command {
             Command::ResetLayout => "Reset layout".into(),
             Command::Escape => "Close, or clear the selection".into(),
             Command::Pair(command) => command.name(),
+            Command::Presentation(command) => command.name().into(),
         }
     }
 }

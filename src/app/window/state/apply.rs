@@ -5,6 +5,7 @@ mod held;
 mod opening;
 mod pair;
 mod parameters;
+mod presenting;
 mod saving;
 mod sweeping;
 
@@ -21,6 +22,7 @@ use crate::app::window::film::FilmCommand;
 use crate::app::window::layout::Pane;
 use crate::app::window::lists::{ListKind, RecordedSteps};
 use crate::app::window::measure::Measuring;
+use crate::app::window::presentation::Chrome;
 use crate::app::window::reducing::Reducing;
 use crate::app::window::session::{Ask, Direction, Goal, Source};
 use crate::app::window::words;
@@ -36,6 +38,7 @@ impl State {
         if self.run.import.is_some() && !command.fits_import() {
             return self.notice("This command needs a run: convert the mesh first, or cancel the import.".to_owned());
         }
+        self.lift_black(&command);
         match command {
             Command::Pair(command) => self.apply_to_pair(command),
             command if self.pair.is_some() => self.apply_beside(command),
@@ -92,11 +95,7 @@ impl State {
             Command::ShowTimes => self.view.times = !self.view.times,
             Command::Fit => self.view.look.ask(Look::Fit),
             Command::ShowDecision => self.view.look.ask(Look::Decision),
-            Command::ToggleFollow => {
-                self.workspace.follows = !self.workspace.follows;
-                let told = if self.workspace.follows { "follows the decisions" } else { "stays where it is" };
-                self.notice(format!("The camera {told}."));
-            }
+            Command::ToggleFollow => self.toggle_follow(),
             Command::LookFrom(side) => self.view.look.ask(Look::From(side)),
             Command::MoveCamera(view, camera) => self.move_camera(view, camera),
             Command::SurfaceView(view) => self.workspace.surfaces.view = view,
@@ -227,6 +226,7 @@ impl State {
             Command::ToggleTheme => self.frame.toggle_theme = true,
             Command::Escape => self.escape(),
             Command::Pair(command) => self.apply_to_pair(command),
+            Command::Presentation(command) => self.apply_to_presentation(command),
         }
     }
 
@@ -469,6 +469,8 @@ impl State {
             self.view.overlay = Overlay::Nothing;
         } else if self.run.import.is_some() {
             self.cancel_import();
+        } else if self.view.chrome == Chrome::Presentation {
+            self.end_presentation();
         } else if self.view.figure_panel || self.view.notes || self.view.messages {
             // What lies over the views is closed before what is selected behind it is let go.
             (self.view.figure_panel, self.view.notes, self.view.messages) = (false, false, false);

@@ -9,7 +9,6 @@ use crate::app::window::session::Moment;
 use crate::app::window::state::State;
 use crate::core::mesh::{Mesh, NodeId};
 use crate::render::camera::Camera;
-use crate::render::scene::Decision;
 
 /// The time in which the camera does all but a third of what is left of its way, in seconds.
 const EASE: f64 = 0.14;
@@ -36,16 +35,17 @@ impl Following {
         &mut self,
         ui: &Ui,
         state: &State,
+        follows: bool,
         moment: &Moment,
         camera: Camera,
         size: DVec2,
         place: impl Fn(&Mesh, NodeId) -> DVec3,
     ) -> Option<Camera> {
-        if !state.workspace().follows {
+        if !follows {
             *self = Following::default();
             return None;
         }
-        let decision = Decision::of(&moment.phase);
+        let decision = moment.decision();
         let base = decision.base?;
         let now = (state.run().number, moment.step);
         if self.seen != Some(now) {
