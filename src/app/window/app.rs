@@ -7,12 +7,13 @@ use std::time::{Duration, Instant};
 use eframe::egui::{self, Context, Frame, Key, Panel, Popup, RawInput, Ui, ViewportCommand};
 use eframe::{CreationContext, wgpu};
 
-use super::command::{Command, keys, keys_of_study};
+use super::command::{Command, keys_in, keys_of_study};
 use super::figures::carried;
 use super::files::{free_path, write_png};
 use super::graphics::{self, Lost};
 use super::layout::{Docks, Layout, Pane, TIMELINE_HEIGHTS};
 use super::panels::{self, PanelStates};
+use super::presentation::Chrome;
 use super::presses::{self, Presses};
 use super::session::Source;
 use super::settings::Settings;
@@ -142,10 +143,10 @@ impl App {
 
     fn keys(&self, context: &Context) -> Vec<Command> {
         let typing = context.egui_wants_keyboard_input();
-        let busy = self.state.run().is_busy();
-        let known = match self.state.study() {
+        let (busy, chrome) = (self.state.run().is_busy(), self.state.chrome());
+        let known = match self.state.study().filter(|_| chrome == Chrome::Panels) {
             Some(study) => keys_of_study(study.explores, self.state.steps_by_operation()),
-            None => keys(),
+            None => keys_in(chrome),
         };
         let mut commands = context.input_mut(|input| presses::commands(&mut input.events, &known, typing, busy));
         if commands.contains(&Command::Escape) && Popup::is_any_open(context) {
@@ -258,13 +259,18 @@ impl App {
         // The panels show one of two runs; the first one stands for the window.
         let (window, state) = (&self.state, self.state.active());
         let (local, asked) = (&mut self.panels[window.active_run() as usize], &mut commands);
-        Panel::top("menus").frame(plain).exact_size(32.0).show(ui, |ui| panels::top::show(ui, window, asked, palette));
+        if window.chrome() == Chrome::Panels {
+            let menus = Panel::top("menus").frame(plain).exact_size(32.0);
+            menus.show(ui, |ui| panels::top::show(ui, window, asked, palette));
+        }
         let mut views = ui.available_rect_before_wrap();
         if window.run().import.is_some() {
             panels::import::show(ui, window, plain, asked, palette);
             egui::CentralPanel::default().frame(plain).show(ui, |ui| {
                 self.views[0].given(ui, window, asked, palette);
             });
+        } else if window.chrome() == Chrome::Presentation {
+            views = panels::presentation::show(ui, window, &mut self.views, plain, asked, palette);
         } else if window.shown_study().is_some() {
             panels::study::show(ui, window, &mut self.views[0], &mut local.study, asked, palette);
         } else {

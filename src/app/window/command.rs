@@ -4,7 +4,7 @@ mod keys;
 mod name;
 mod rules;
 
-pub use keys::{Purpose, groups, keys, keys_of_study};
+pub use keys::{Purpose, groups, keys, keys_in, keys_of_study};
 
 pub use rules::Rules;
 
@@ -14,6 +14,7 @@ use super::import::{Gesture, ImportOptions};
 use super::layout::Pane;
 use super::lists::ListKind;
 use super::pair::PairCommand;
+use super::presentation::{Chrome, PresentationCommand};
 use super::session::{Direction, Goal, Source};
 use super::state::{SurfaceView, ViewCamera, ViewKind};
 use super::study::StudyCommand;
@@ -216,6 +217,8 @@ pub enum Command {
     Pair(PairCommand),
     /// Learn.
     Study(StudyCommand),
+    /// Begin, end or change a presentation.
+    Presentation(PresentationCommand),
 }
 
 /// Kinds of events that one can go to.
@@ -241,7 +244,8 @@ impl Command {
         if *self == Command::Help {
             return Some("?".into());
         }
-        keys().into_iter().find(|k| k.2 == *self).map(|(modifiers, key, _)| keys::text(modifiers, key))
+        let mut all = keys().into_iter().chain(keys_in(Chrome::Presentation));
+        all.find(|k| k.2 == *self).map(|(modifiers, key, _)| keys::text(modifiers, key))
     }
 
     /// Its name with its key, for tooltips.
@@ -360,6 +364,7 @@ impl Command {
         all.extend(SweepCommand::ALL.map(Command::Sweep));
         all.extend(Rules::ALL.map(Command::SetRules));
         all.extend(StudyCommand::all().into_iter().map(Command::Study));
+        all.extend(PresentationCommand::ALL.map(Command::Presentation));
         all.extend(PairCommand::all().into_iter().map(Command::Pair));
         all.extend(SurfaceView::ALL.map(Command::SurfaceView));
         all.extend(ColourBy::ALL.map(Command::ColourBy));

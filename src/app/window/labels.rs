@@ -14,6 +14,7 @@ use eframe::egui::{Align2, Color32, FontId, Galley, Painter, Pos2, Rect, Ui, Vec
 
 pub use measures::shading;
 
+use super::presentation::Audience;
 use super::session::Moment;
 use super::state::State;
 use super::theme::{self, ink};
@@ -80,6 +81,7 @@ pub fn show(
     moment: &Moment,
     palette: &Palette,
     which: ViewRole,
+    audience: Option<Audience>,
     memory: &mut Memory,
 ) {
     let LabelledScene { frame, scene, cover } = *seen;
@@ -105,6 +107,7 @@ pub fn show(
         is_new,
         now,
         labels: BTreeMap::new(),
+        type_scale: audience.map_or(1.0, |audience| audience.type_scale),
     };
     let decision = Decision::of(&moment.phase);
     if which == ViewRole::Lens {
@@ -126,7 +129,8 @@ pub fn show(
         over.ellipses();
     }
     if !small {
-        over.letters(&decision);
+        // An audience has the letters of what has just been done, too.
+        over.letters(&audience.map_or(decision, |_| moment.decision()));
     }
     if state.document().layers.labels && which != ViewRole::Whole {
         over.base(&decision, which);
@@ -182,6 +186,8 @@ struct Labels<'a> {
     /// The time at which new labels start to fade in; none if they do not.
     is_new: Option<f64>,
     now: f64,
+    /// How much larger all of them are than in the window.
+    type_scale: f32,
 }
 
 impl Labels<'_> {
@@ -218,12 +224,16 @@ impl Labels<'_> {
         which == ViewRole::Whole && length < 24.0
     }
 
+    fn sized(&self, font: FontId) -> FontId {
+        FontId { size: self.type_scale * font.size, ..font }
+    }
+
     /// Adds a label, unless it would cover another one; its plate is drawn first.
     fn label(&mut self, at: Pos2, anchor: Align2, text: &str, font: FontId, colour: Color32) -> bool {
         if self.taken.len() >= MOST_LABELS {
             return false;
         }
-        let galley = self.painter.layout_no_wrap(text.to_owned(), font, colour);
+        let galley = self.painter.layout_no_wrap(text.to_owned(), self.sized(font), colour);
         let rect = anchor.anchor_size(at, galley.size());
         let is_free = self.frame.rect.contains_rect(rect) && self.is_free(rect);
         if is_free {
@@ -235,7 +245,7 @@ impl Labels<'_> {
     /// Adds the name of a place in the view: beside it, where it covers no earlier label if there is such a side, and
     /// wholly in the view.
     fn name(&mut self, place: Pos2, text: &str, font: FontId, colour: Color32) {
-        let galley = self.painter.layout_no_wrap(text.to_owned(), font, colour);
+        let galley = self.painter.layout_no_wrap(text.to_owned(), self.sized(font), colour);
         let view = self.frame.rect.shrink2(PLATE);
         let rects = NAME_SIDES.map(|(anchor, away)| within(anchor.anchor_size(place + away, galley.size()), view));
         let is_clear = |rect: &&Rect| self.is_free(**rect) && !rect.expand2(PLATE).contains(place);
@@ -273,7 +283,7 @@ impl Labels<'_> {
             let away = (at - middle).normalized();
             let away = if away.x.is_nan() || away == Vec2::ZERO { Vec2::new(0.0, -1.0) } else { away };
             let (text, font, colour) = (letter.to_string(), theme::semibold(13.0), ink(self.palette.accent));
-            self.label(at + 17.0 * away, Align2::CENTER_CENTER, &text, font, colour);
+            self.label(at + 17.0 * self.type_scale * away, Align2::CENTER_CENTER, &text, font, colour);
         }
     }
 
@@ -284,7 +294,7 @@ impl Labels<'_> {
         let across = (q - p).rot90().normalized();
         // The dead side lies to the right of A to B: down on the screen, turned by y.
         let across = if self.is_behind(a) { -across } else { across };
-        let at = p + 0.5 * (q - p) + 18.0 * Vec2::new(-across.x, -across.y);
+        let at = p + 0.5 * (q - p) + 18.0 * self.type_scale * Vec2::new(-across.x, -across.y);
         let text = match which {
             ViewRole::Lens => words::fixed(segment.length_metric, 3),
             _ => format!("H {}", words::size(segment.h_value)),
@@ -335,7 +345,7 @@ impl Labels<'_> {
         let moment = self.moment;
         for segment in moment.front.iter().filter(|s| decision.base != Some([s.a, s.b])) {
             let Some((p, q)) = self.place(segment.a).zip(self.place(segment.b)) else { continue };
-            if p.distance(q) < 70.0 || !self.frame.rect.contains(p + 0.5 * (q - p)) {
+            if p.distance(q) < 70.0 * self.type_scale || !self.frame.rect.contains(p + 0.5 * (q - p)) {
                 continue;
             }
             let text = format!("{}  {}", segment.class, words::size(segment.h_value));
@@ -355,11 +365,12 @@ impl Labels<'_> {
             }
             let near = mesh.neighbours(node).filter_map(|n| self.scene.spot(n));
             let nearest = near.map(|s| s.at.distance_squared(spot.at)).fold(f64::INFINITY, f64::min);
-            if nearest.sqrt() * scale < LEAST_FOR_IDS {
+            if nearest.sqrt() * scale < LEAST_FOR_IDS * f64::from(self.type_scale) {
                 continue;
             }
             let (text, font, colour) = (node.0.to_string(), theme::regular(11.0), ink(self.palette.weak));
-            let is_shown = self.label(at + Vec2::new(7.0, -9.0), Align2::LEFT_CENTER, &text, font, colour);
+            let is_shown =
+                self.label(at + self.type_scale * Vec2::new(7.0, -9.0), Align2::LEFT_CENTER, &text, font, colour);
             if !is_shown && self.taken.len() >= MOST_LABELS {
                 break;
             }

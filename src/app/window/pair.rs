@@ -274,6 +274,7 @@ impl Command {
                 | Command::ResetLayout
                 | Command::ToggleTheme
                 | Command::ToggleFollow
+                | Command::Presentation(_)
                 | Command::Measure
                 | Command::ShowTimes
                 | Command::Speed(_)

@@ -24,10 +24,13 @@ pub mod import;
 pub mod over;
 pub mod study;
 pub mod sweep;
+pub mod presentation;
+
+use std::sync::Arc;
 
 use eframe::egui::{
-    self, Align, AsIdSalt, Button, ComboBox, Frame, Margin, Response, RichText, Role, Ui, UiBuilder, WidgetInfo,
-    WidgetText,
+    self, Align, AsIdSalt, Button, ComboBox, Frame, Galley, Margin, Painter, Response, RichText, Role, Ui, UiBuilder,
+    WidgetInfo, WidgetText,
 };
 
 use super::command::Command;
@@ -123,6 +126,31 @@ pub fn floating(palette: &Palette) -> Frame {
 /// The inside of a panel.
 pub fn inset() -> Frame {
     Frame::NONE.inner_margin(Margin::symmetric(14, 8))
+}
+
+/// A sentence in so many lines, in the first of some font sizes in which it fits, and shortened in the last one where it
+/// fits in none.
+pub fn in_lines(
+    painter: &Painter,
+    text: &str,
+    width: f32,
+    lines: usize,
+    sizes: &[f32],
+    palette: &Palette,
+) -> Arc<Galley> {
+    let lay = |size: &f32| {
+        let mut job = theme::formula(text, *size, ink(palette.text), ink(palette.strong));
+        (job.wrap.max_width, job.wrap.max_rows) = (width.max(1.0), lines);
+        painter.layout_job(job)
+    };
+    let [first, rest @ ..] = sizes else { return lay(&theme::TABLE) };
+    let mut laid = lay(first);
+    for size in rest {
+        if laid.elided {
+            laid = lay(size);
+        }
+    }
+    laid
 }
 
 /// Weak text, for units and notes.

@@ -78,7 +78,10 @@ fn command_of(held: Modifiers, pressed: Key) -> Option<Command> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::window::session::Goal;
+    use crate::app::window::command::keys_in;
+    use crate::app::window::presentation::Chrome;
+    use crate::app::window::presentation::PresentationCommand;
+    use crate::app::window::session::{Direction, Goal};
 
     fn press(key: Key, modifiers: Modifiers) -> Event {
         Event::Key { key, physical_key: None, pressed: true, repeat: false, modifiers }
@@ -133,6 +136,20 @@ mod tests {
         let mut events = vec![right, held.clone(), held.clone()];
         assert_eq!(commands(&mut events.clone(), &keys(), false, false), [go.clone(), go.clone()]);
         assert_eq!(commands(&mut events, &keys(), false, true), [go]);
+    }
+
+    #[test]
+    fn keys_of_clickers_are_commands_in_presentations_alone() {
+        let (none, b, page) = (Modifiers::NONE, Key::B, Key::PageDown);
+        let [switch, _, black] = PresentationCommand::ALL.map(Command::Presentation);
+        let next = Command::Go(Goal::Quads(1));
+        let f5 = [press(Key::F5, none), press(Key::F5, Modifiers::SHIFT), press(Key::F5, Modifiers::ALT)];
+        let pressed = [&f5[..], &[press(b, none), press(Key::Period, none), press(page, none)]].concat();
+        let back = Command::ToBreakpoint(Direction::Back);
+        let outside = [Command::ToBreakpoint(Direction::Forward), switch.clone(), back.clone(), next.clone()];
+        assert_eq!(commands(&mut pressed.clone(), &keys_in(Chrome::Panels), false, false), outside);
+        let inside = [switch.clone(), switch, back, black.clone(), black, next];
+        assert_eq!(commands(&mut pressed.clone(), &keys_in(Chrome::Presentation), false, false), inside);
     }
 
     #[test]

@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use super::layout::{Layout, TIMELINE_HEIGHTS};
+use super::presentation::PresentationForm;
 use super::state::{Document, SurfaceStyle, SurfaceView, Workspace};
 use super::study::Learned;
 use super::sweep::SweepForm;
@@ -41,6 +42,9 @@ pub struct Settings {
     hidden: HiddenLines,
     #[serde(default)]
     curved: bool,
+    /// Whether presentations have a spotlight, and a camera that follows.
+    #[serde(default = "presented")]
+    presented: [bool; 2],
     /// Size of the window in points.
     #[serde(default)]
     pub window: Option<[f32; 2]>,
@@ -52,6 +56,12 @@ pub struct Settings {
     /// What was learnt.
     #[serde(default, skip_serializing_if = "Learned::is_nothing")]
     learned: Learned,
+}
+
+/// How presentations are shown where older settings do not say.
+fn presented() -> [bool; 2] {
+    let PresentationForm { spotlight, follows } = PresentationForm::default();
+    [spotlight, follows]
 }
 
 /// What is swept, by names. Those that another quadfront does not have are left out.
@@ -96,6 +106,7 @@ impl Settings {
             place: view,
             hidden,
             curved,
+            presented: [workspace.presentation.spotlight, workspace.presentation.follows],
             window,
             docks: layout.arranged(),
             sweep: (workspace.sweep != SweepForm::default()).then(|| KeptSweep::of(&workspace.sweep)),
@@ -116,6 +127,8 @@ impl Settings {
         if self.speed.is_finite() && (0.1..=1000.0).contains(&self.speed) {
             workspace.speed = self.speed;
         }
+        let [spotlight, follows] = self.presented;
+        workspace.presentation = PresentationForm { spotlight, follows };
         workspace.sweep = self.sweep.as_ref().map_or_else(SweepForm::default, KeptSweep::form);
         workspace.learned = self.learned.clone();
         workspace
@@ -216,6 +229,7 @@ mod tests {
         workspace.surfaces = SurfaceStyle { view: SurfaceView::Both, hidden: HiddenLines::Faint, curved: true };
         workspace.sweep =
             SweepForm { axes: [(Some("c"), "1.5,2".to_owned()), (None, "1:2:.5".to_owned())], figure: "min_angle" };
+        workspace.presentation.spotlight = false;
         let settings = Settings::of(&workspace, &layout, false, Some([1280.0, 800.0]));
         settings.write(&path).unwrap();
         let read = Settings::read(&path).unwrap().unwrap();
@@ -223,6 +237,7 @@ mod tests {
         let other = read.workspace();
         assert_eq!(other.document, workspace.document);
         assert_eq!((other.speed, other.surfaces, other.sweep), (30.0, workspace.surfaces, workspace.sweep));
+        assert_eq!(other.presentation, PresentationForm { spotlight: false, follows: true });
         assert_eq!(read.layout().timeline_height, 300.0);
         // Older files have no settings for space.
         let text = std::fs::read_to_string(&path).unwrap();

@@ -20,6 +20,7 @@ pub use workspace::{Breakpoint, Document, SurfaceStyle, SurfaceView, Watchpoint,
 
 use super::autosave::Marks;
 use super::film::FilmWork;
+use super::presentation::Chrome;
 use super::reducing::Reducing;
 use super::session::{Moment, Posed, Stops, Wake};
 use super::study::Study;
@@ -123,7 +124,8 @@ impl State {
 
     /// The same, while the window shows it and not the panels.
     pub fn shown_study(&self) -> Option<&Study> {
-        self.study.as_ref().filter(|study| !study.explores && self.run.import.is_none() && self.pair.is_none())
+        let is_alone = self.pair.is_none() && self.chrome() == Chrome::Panels && self.run.import.is_none();
+        self.study.as_ref().filter(|study| is_alone && !study.explores)
     }
 
     /// The question that waits for an answer at the current state.
@@ -163,6 +165,11 @@ impl State {
     /// The sweep of the window, once there is one.
     pub fn sweep(&self) -> Option<&SweepWork> {
         self.sweep.as_ref()
+    }
+
+    /// What is around the views. An import has the panels of its own.
+    pub fn chrome(&self) -> Chrome {
+        if self.run.import.is_some() { Chrome::Panels } else { self.view.chrome }
     }
 
     /// What holds for the frame at hand only.

@@ -6,6 +6,7 @@ mod following;
 mod given;
 pub mod pair;
 mod space;
+mod spotlight;
 mod stage;
 mod tools;
 
@@ -23,6 +24,7 @@ pub use tools::area as tools_area;
 use super::command::Command;
 use super::labels;
 use super::panels::{self, actions, on_click};
+use super::presentation::Audience;
 use super::session::Moment;
 use super::state::{Look, State, SurfaceView, ViewCamera, ViewKind};
 use super::theme::ink;
@@ -77,6 +79,8 @@ pub struct Views {
     looked: u64,
     /// The camera that goes where the decision is.
     following: following::Following,
+    /// The audience of a presentation; none in the window.
+    pub audience: Option<Audience>,
 }
 
 /// The camera of a view and its rectangle on the screen.
@@ -142,7 +146,7 @@ impl Views {
                 ui.painter().vline(middle + 1.0, rect.y_range(), (2.0, ink(palette.line)));
             }
         }
-        if on_surfaces {
+        if on_surfaces && self.audience.is_none() {
             tools::show(ui, rect, state, commands, palette);
         }
     }
@@ -172,7 +176,7 @@ impl Views {
         let (mut camera, mut is_fitted) = aim(state, moment, size, look);
         // Where it is beside a view in space, that one follows the decisions.
         if index == 0
-            && let Some(guided) = self.following.guide(ui, state, moment, camera, size, &IN_PLANE)
+            && let Some(guided) = self.guided(ui, state, moment, camera, size, &IN_PLANE)
         {
             (camera, is_fitted) = (guided, false);
         }
@@ -195,10 +199,24 @@ impl Views {
         paint(ui, self.first + index, &frame, &self.plane.scene, palette, Light::NONE, 0.0);
         faces::show(ui, &frame, state, moment, palette);
         let over = labels::LabelledScene { frame: &frame, scene: &self.plane.scene, cover: None };
-        labels::show(ui, &over, state, moment, palette, labels::ViewRole::Main, &mut self.labels[index]);
+        labelled(ui, &over, state, moment, palette, self.audience, &mut self.labels[index]);
         if index == 0 {
             labels::shading(ui, &frame, &self.shading, palette);
         }
+    }
+
+    /// The camera of this frame, where it follows the decisions and moves.
+    fn guided<P: Fn(&Mesh, NodeId) -> DVec3, N: Fn(&Mesh, NodeId) -> DVec3>(
+        &mut self,
+        ui: &Ui,
+        state: &State,
+        moment: &Moment,
+        camera: Camera,
+        size: DVec2,
+        places: &Places<P, N>,
+    ) -> Option<Camera> {
+        let follows = self.audience.map_or(state.workspace().follows, |audience| audience.follows);
+        self.following.guide(ui, state, follows, moment, camera, size, places)
     }
 
     /// Another view of the same scene.
@@ -225,7 +243,7 @@ impl Views {
         self.plane.update(state, &moment, palette, &frame, Form::Plane, false, &mut self.shading);
         paint(ui, self.first + k, &frame, &self.plane.scene, palette, Light::NONE, 0.0);
         let over = labels::LabelledScene { frame: &frame, scene: &self.plane.scene, cover: None };
-        labels::show(ui, &over, state, &moment, palette, which, &mut self.labels[k]);
+        labels::show(ui, &over, state, &moment, palette, which, None, &mut self.labels[k]);
     }
 
     /// Reports what is under the pointer, and selects, shows and offers actions.
@@ -264,6 +282,22 @@ impl Views {
     pub fn note(&mut self, changes: &Changes, slots: usize) {
         self.plane.note(changes, slots);
         self.space.note(changes, slots);
+    }
+}
+
+/// Labels over a main view, and the light of a presentation.
+fn labelled(
+    ui: &Ui,
+    over: &labels::LabelledScene<'_>,
+    state: &State,
+    moment: &Moment,
+    palette: &Palette,
+    audience: Option<Audience>,
+    memory: &mut labels::Memory,
+) {
+    labels::show(ui, over, state, moment, palette, labels::ViewRole::Main, audience, memory);
+    if audience.is_some_and(|audience| audience.spotlight) {
+        spotlight::show(ui, over.frame, over.scene, &moment.decision(), palette);
     }
 }
 

@@ -2,7 +2,8 @@
 
 use eframe::egui::{Key, Modifiers};
 
-use super::{Command, PairCommand, StudyCommand};
+use super::{Command, PairCommand, PresentationCommand, StudyCommand};
+use crate::app::window::presentation::Chrome;
 use crate::app::window::session::{Direction, Goal};
 use crate::app::window::view_layer::ViewLayer;
 use crate::core::kernel::worded::worded;
@@ -17,6 +18,7 @@ worded! {
         Layers = "Layers",
         Files = "Files and changes",
         Lessons = "Lessons",
+        Presentation = "Presentations",
         Window = "Window",
     }
 }
@@ -52,6 +54,7 @@ impl Purpose {
             | Command::Figures
             | Command::Undo
             | Command::Redo => Purpose::Files,
+            Command::Presentation(_) => Purpose::Presentation,
             _ => Purpose::Window,
         }
     }
@@ -60,7 +63,7 @@ impl Purpose {
 /// The keys by what they are for, each command once with all its keys: plain keys first, then those with Ctrl, Shift
 /// and Alt.
 pub fn groups() -> Vec<(Purpose, Vec<(String, Command)>)> {
-    let mut all = keys();
+    let mut all = keys_in(Chrome::Presentation);
     all.extend(STUDY);
     all.sort_by_key(|(held, ..)| (held.alt, held.shift, held.command));
     let mut groups = Purpose::ALL.map(|purpose| (purpose, Vec::new())).to_vec();
@@ -106,6 +109,7 @@ pub fn keys() -> Vec<(Modifiers, Key, Command)> {
         (SHIFT, Key::D, Command::ToggleFollow),
         (CTRL, Key::ArrowRight, Command::Go(Goal::Steps(1))),
         (CTRL, Key::ArrowLeft, Command::Go(Goal::Steps(-1))),
+        (SHIFT, Key::F5, Command::Presentation(PresentationCommand::Switch)),
         (SHIFT, Key::ArrowRight, Command::Go(Goal::Quads(10))),
         (SHIFT, Key::ArrowLeft, Command::Go(Goal::Quads(-10))),
         (Modifiers::ALT, Key::F5, Command::ToBreakpoint(Direction::Back)),
@@ -124,6 +128,8 @@ pub fn keys() -> Vec<(Modifiers, Key, Command)> {
         (CTRL, Key::K, Command::Pair(PairCommand::Fork)),
         (NONE, Key::ArrowRight, Command::Go(Goal::Quads(1))),
         (NONE, Key::ArrowLeft, Command::Go(Goal::Quads(-1))),
+        (NONE, Key::PageDown, Command::Go(Goal::Quads(1))),
+        (NONE, Key::PageUp, Command::Go(Goal::Quads(-1))),
         (NONE, Key::F5, Command::ToBreakpoint(Direction::Forward)),
         (NONE, Key::F8, Command::Pair(PairCommand::SeekDifference(Direction::Forward))),
         (NONE, Key::Home, Command::Go(Goal::Step(0))),
@@ -166,6 +172,29 @@ pub fn keys_of_study(explores: bool, by_operation: bool) -> Vec<(Modifiers, Key,
     keys.retain(|key| !own.iter().any(|other| (other.0, other.1) == (key.0, key.1)));
     keys.extend(own);
     keys
+}
+
+/// Keys that mean something else in presentations, or nothing outside of them: those of clickers, which begin and end
+/// with F5.
+fn presentation_keys() -> Vec<(Modifiers, Key, Command)> {
+    [
+        (Key::F5, PresentationCommand::Switch),
+        (Key::S, PresentationCommand::Spotlight),
+        (Key::B, PresentationCommand::Black),
+        (Key::Period, PresentationCommand::Black),
+    ]
+    .map(|(key, command)| (NONE, key, Command::Presentation(command)))
+    .to_vec()
+}
+
+/// All keys and their commands where so much is around the views, in the order of [`keys`].
+pub fn keys_in(chrome: Chrome) -> Vec<(Modifiers, Key, Command)> {
+    let mut all = keys();
+    if chrome == Chrome::Presentation {
+        let bare = all.iter().position(|(held, ..)| held.is_none()).unwrap_or(all.len());
+        all.splice(bare..bare, presentation_keys());
+    }
+    all
 }
 
 fn key_name(key: Key) -> &'static str {

@@ -106,6 +106,7 @@ impl Command {
             Command::Escape => "Close, or clear the selection".into(),
             Command::Pair(command) => command.name(),
             Command::Study(command) => command.name(),
+            Command::Presentation(command) => command.name().into(),
         }
     }
 }

@@ -64,7 +64,7 @@ impl Labels<'_> {
         self.painter.add(Shape::line(points, Stroke::new(1.25, ink(self.palette.accent))));
         let name = if side == Side::Left { "A" } else { "B" };
         let text = format!("θ{name} {}°", words::degrees(segment.theta[side.index()]));
-        let at = middle + 14.0 * (middle - centre).normalized();
+        let at = middle + 14.0 * self.type_scale * (middle - centre).normalized();
         let anchor = if at.x < centre.x { Align2::RIGHT_CENTER } else { Align2::LEFT_CENTER };
         self.label(at, anchor, &text, theme::medium(12.0), ink(self.palette.accent));
     }

@@ -149,7 +149,7 @@ impl Labels<'_> {
     /// A text on a plate, so that it is read over every colour. Returns where it stands.
     fn plated(&self, at: Pos2, anchor: Align2, text: &str) -> Rect {
         let colour = ink(self.palette.weak);
-        let galley = self.painter.layout_no_wrap(text.to_owned(), theme::regular(11.5), colour);
+        let galley = self.painter.layout_no_wrap(text.to_owned(), self.sized(theme::regular(11.5)), colour);
         let rect = anchor.anchor_size(at, galley.size());
         self.painter.rect_filled(rect.expand2(Vec2::new(3.0, 0.0)), 3.0, ink(self.palette.label_plate));
         self.painter.galley(rect.min, galley, colour);

@@ -1,10 +1,8 @@
 //! The transport: a row of buttons with the status line, and the timeline below it.
 
-use std::sync::Arc;
+use eframe::egui::{self, Align, ComboBox, Layout, Rect, RichText, Ui, Vec2};
 
-use eframe::egui::{self, Align, ComboBox, Galley, Layout, Painter, Rect, RichText, Ui, Vec2};
-
-use super::{icon_button, on_click, timeline};
+use super::{icon_button, in_lines, on_click, timeline};
 use crate::app::window::command::{Command, KINDS};
 use crate::app::window::icons;
 use crate::app::window::layout::Pane;
@@ -203,22 +201,12 @@ fn narration_height(width: f32) -> f32 {
     LINE * narration_lines(width) as f32 + 6.0
 }
 
-/// A sentence in so many lines: in a smaller font where it needs that, and shortened where that is not enough.
-fn in_lines(painter: &Painter, text: &str, width: f32, lines: usize, palette: &Palette) -> Arc<Galley> {
-    let lay = |size: f32| {
-        let mut job = theme::formula(text, size, ink(palette.text), ink(palette.strong));
-        (job.wrap.max_width, job.wrap.max_rows) = (width.max(1.0), lines);
-        painter.layout_job(job)
-    };
-    let usual = lay(theme::TABLE);
-    if usual.elided { lay(theme::HEAD) } else { usual }
-}
-
 /// What the last step did, in a sentence. A click shows the transcript.
 fn narration(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &Palette) {
     let Some(moment) = &state.run().moment else { return };
     let (text, width) = (&moment.narration, ui.max_rect().width());
-    let galley = in_lines(ui.painter(), text, width, narration_lines(width + 2.0 * SIDE), palette);
+    let galley =
+        in_lines(ui.painter(), text, width, narration_lines(width + 2.0 * SIDE), &[theme::TABLE, theme::HEAD], palette);
     let tip = if galley.elided { plain(text) } else { "Show the transcript".to_owned() };
     let told = ui.add(egui::Label::new(galley).selectable(false).sense(egui::Sense::click()));
     told.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Status, true, plain(text)));

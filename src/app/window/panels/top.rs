@@ -8,6 +8,7 @@ use super::on_click;
 use crate::app::window::command::Command;
 use crate::app::window::icons;
 use crate::app::window::pair::PairCommand;
+use crate::app::window::presentation::PresentationCommand;
 use crate::app::window::session::{Goal, Source};
 use crate::app::window::state::{State, SurfaceView};
 use crate::app::window::study::{Study, StudyCommand, Subject};
@@ -124,6 +125,9 @@ fn menus(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
         let looks = [Command::Fit, Command::ShowDecision, Command::ToggleFollow, Command::FindWorst];
         items(ui, looks, commands);
         items(ui, [Command::ToggleTheme, Command::ResetLayout], commands);
+        ui.separator();
+        let [present, spotlight, _] = PresentationCommand::ALL.map(Command::Presentation);
+        items(ui, [present, spotlight], commands);
         ui.separator();
         ui.menu_button("Surfaces", |ui| {
             items(ui, SurfaceView::ALL.map(Command::SurfaceView), commands);

@@ -10,6 +10,7 @@ use crate::core::mesh::{ElementId, Mesh};
 use crate::core::run::front_table::{Loop, Row};
 use crate::core::run::{Changes, SegmentFacts, Selecting, Tried};
 use crate::render::refused::{Refused, refused};
+use crate::render::scene::Decision;
 
 /// Whether the invariants hold.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -61,6 +62,8 @@ pub struct Moment {
     pub so_far: Vec<(u64, Event)>,
     /// The attempts at it, where one was taken back.
     pub attempts: Vec<Tried>,
+    /// The last quadrilateral that the front formed, until the next base is selected.
+    pub last_quad: Option<ElementId>,
     /// What comes next.
     pub next: String,
     /// Whether the invariants hold.
@@ -70,6 +73,17 @@ pub struct Moment {
 }
 
 impl Moment {
+    /// The quadrilateral at hand: the one under way or, until the next one is begun, the one before.
+    pub fn decision(&self) -> Decision {
+        match self.last_quad.filter(|quad| self.mesh.is_quad(*quad)) {
+            Some(quad) => {
+                let [a, b, d, c] = self.mesh.quad(quad);
+                Decision { base: Some([a, b]), tops: [Some(c), Some(d)] }
+            }
+            None => Decision::of(&self.phase),
+        }
+    }
+
     /// The candidates of the last step that were not chosen.
     pub fn refused(&self) -> Vec<Refused> {
         refused(&self.mesh, &self.phase, self.candidates.as_ref())

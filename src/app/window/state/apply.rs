@@ -6,6 +6,7 @@ mod marking;
 mod opening;
 mod pair;
 mod parameters;
+mod presenting;
 mod saving;
 mod studying;
 mod sweeping;
@@ -24,6 +25,7 @@ use crate::app::window::layout::Pane;
 use crate::app::window::lists::{ListKind, RecordedSteps};
 use crate::app::window::measure::Measuring;
 use crate::app::window::pair::PairCommand;
+use crate::app::window::presentation::Chrome;
 use crate::app::window::reducing::Reducing;
 use crate::app::window::session::{Ask, Direction, Goal, Source};
 use crate::app::window::words;
@@ -39,6 +41,7 @@ impl State {
         if self.run.import.is_some() && !command.fits_import() {
             return self.notice("This command needs a run: convert the mesh first, or cancel the import.".to_owned());
         }
+        self.lift_black(&command);
         let Some(command) = self.as_answer(command) else { return };
         match command {
             Command::Study(command) => {
@@ -102,11 +105,7 @@ impl State {
             Command::ShowTimes => self.view.times = !self.view.times,
             Command::Fit => self.view.look.ask(Look::Fit),
             Command::ShowDecision => self.view.look.ask(Look::Decision),
-            Command::ToggleFollow => {
-                self.workspace.follows = !self.workspace.follows;
-                let told = if self.workspace.follows { "follows the decisions" } else { "stays where it is" };
-                self.notice(format!("The camera {told}."));
-            }
+            Command::ToggleFollow => self.toggle_follow(),
             Command::LookFrom(side) => self.view.look.ask(Look::From(side)),
             Command::MoveCamera(view, camera) => self.move_camera(view, camera),
             Command::SurfaceView(view) => self.workspace.surfaces.view = view,
@@ -238,6 +237,7 @@ impl State {
             Command::Escape => self.escape(),
             Command::Pair(command) => self.apply_to_pair(command),
             Command::Study(command) => self.apply_to_study(command),
+            Command::Presentation(command) => self.apply_to_presentation(command),
         }
     }
 
@@ -425,6 +425,8 @@ impl State {
             self.view.overlay = Overlay::Nothing;
         } else if self.run.import.is_some() {
             self.cancel_import();
+        } else if self.view.chrome == Chrome::Presentation {
+            self.end_presentation();
         } else if self.view.figure_panel || self.view.notes || self.view.messages {
             // What lies over the views is closed before what is selected behind it is let go.
             (self.view.figure_panel, self.view.notes, self.view.messages) = (false, false, false);

@@ -6,6 +6,7 @@ use glam::DVec2;
 
 use super::log::MessageLog;
 use crate::app::window::layout::Pane;
+use crate::app::window::presentation::Chrome;
 use crate::core::mesh::ElementId;
 use crate::core::run::run;
 use crate::render::camera::{Bearing, Camera};
@@ -40,6 +41,10 @@ pub struct ViewState {
     /// Changes when something that is drawn over the mesh changes.
     pub over_epoch: u64,
     pub overlay: Overlay,
+    /// What is around the views.
+    pub chrome: Chrome,
+    /// Whether a presentation shows nothing.
+    pub is_black: bool,
     /// Whether the notes on the case are shown.
     pub notes: bool,
     /// Whether the panel for figures is shown.

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::app::window::figures::FigureForm;
+use crate::app::window::presentation::PresentationForm;
 use crate::app::window::session::Direction;
 use crate::app::window::study::Learned;
 use crate::app::window::sweep::SweepForm;
@@ -22,6 +23,8 @@ pub struct Workspace {
     pub speed: f32,
     /// Whether the camera goes where the decision is.
     pub follows: bool,
+    /// How presentations are shown.
+    pub presentation: PresentationForm,
     /// How meshes on surfaces are shown.
     pub surfaces: SurfaceStyle,
     /// How figures are made.
@@ -125,6 +128,7 @@ impl Default for Workspace {
             document: Document::default(),
             speed: 8.0,
             follows: false,
+            presentation: PresentationForm::default(),
             surfaces: SurfaceStyle::default(),
             figure: FigureForm::default(),
             sweep: SweepForm::default(),

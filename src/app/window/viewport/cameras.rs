@@ -121,7 +121,7 @@ pub(super) fn near(
     place: impl Fn(&Mesh, NodeId) -> DVec3,
 ) -> Option<(DVec3, f64)> {
     let mesh = &moment.mesh;
-    let decision = Decision::of(&moment.phase);
+    let decision = moment.decision();
     let tops = decision.tops.into_iter().flatten().filter(|_| decision.base == Some(base));
     let nodes: Vec<NodeId> = base.into_iter().chain(tops).collect();
     if !nodes.iter().all(|n| mesh.has_node(*n)) {

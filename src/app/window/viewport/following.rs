@@ -9,7 +9,6 @@ use crate::app::window::session::Moment;
 use crate::app::window::state::State;
 use crate::core::mesh::{Mesh, NodeId};
 use crate::render::camera::Camera;
-use crate::render::scene::Decision;
 
 /// The time in which the camera does all but a third of what is left of its way, in seconds.
 const EASE: f64 = 0.14;
@@ -52,11 +51,12 @@ pub(super) struct Places<P, N> {
 }
 
 impl Following {
-    /// The camera of this frame, where it moves.
+    /// The camera of this frame, where it moves; `follows` says whether it goes where the decision is.
     pub(super) fn guide<P: Fn(&Mesh, NodeId) -> DVec3, N: Fn(&Mesh, NodeId) -> DVec3>(
         &mut self,
         ui: &Ui,
         state: &State,
+        follows: bool,
         moment: &Moment,
         camera: Camera,
         size: DVec2,
@@ -72,8 +72,8 @@ impl Following {
             self.framed = None;
         }
         let now = (state.run().number, moment.step);
-        if state.workspace().follows {
-            let decision = Decision::of(&moment.phase);
+        if follows {
+            let decision = moment.decision();
             if let Some(base) = decision.base
                 && self.seen != Some(now)
             {

@@ -59,8 +59,8 @@ pub fn show(
     }
 }
 
-/// The view of one run. Returns its camera where that has just moved.
-fn view(
+/// The view of one run: the other one is not seen there. Returns its camera where that has just moved.
+pub fn view(
     ui: &mut Ui,
     rect: Rect,
     state: &State,

@@ -5,7 +5,7 @@ use glam::{DQuat, DVec2, DVec3};
 
 use super::cameras::{extent_of, is_seen_well, near, scale_for, zoom};
 use super::following::Places;
-use super::{ViewFrame, Views, moved, paint};
+use super::{ViewFrame, Views, labelled, moved, paint};
 use crate::app::window::command::Command;
 use crate::app::window::labels;
 use crate::app::window::session::Moment;
@@ -46,7 +46,7 @@ impl Views {
         let size = DVec2::new(f64::from(rect.width()), f64::from(rect.height()));
         let (mut camera, mut is_fitted) = aim(state, moment, size, look);
         let places = Places { place: |mesh: &Mesh, n| mesh.xyz(n), normal: |mesh: &Mesh, n| mesh.normal(n) };
-        if let Some(guided) = self.following.guide(ui, state, moment, camera, size, &places) {
+        if let Some(guided) = self.guided(ui, state, moment, camera, size, &places) {
             (camera, is_fitted) = (guided, false);
         }
         if self.steer(ui, &response, &mut camera, rect, moment) {
@@ -73,7 +73,7 @@ impl Views {
             self.cover = Covering { of, cover: Cover::of(&self.space.scene, &camera, size) };
         }
         let over = labels::LabelledScene { frame: &frame, scene: &self.space.scene, cover: Some(&self.cover.cover) };
-        labels::show(ui, &over, state, moment, palette, labels::ViewRole::Main, &mut self.labels[0]);
+        labelled(ui, &over, state, moment, palette, self.audience, &mut self.labels[0]);
         labels::shading(ui, &frame, &self.shading, palette);
     }
 

@@ -7,7 +7,7 @@ use std::time::Instant;
 use super::super::SessionNews;
 use super::super::moment::{Moment, Verdict, segment};
 use super::{RECENT, Worker};
-use crate::core::convert::{Event, EventKind, LookedAt};
+use crate::core::convert::{Event, EventKind, LookedAt, Phase};
 use crate::core::fault::Fault;
 use crate::core::mesh::ElementId;
 use crate::core::run::front_table::Row;
@@ -70,6 +70,7 @@ impl Worker {
         };
         let is_rolled_back = |told: &(u64, Event)| told.1.kind() == EventKind::RolledBack;
         let attempts = if so_far.iter().any(is_rolled_back) { self.history.attempts()? } else { Vec::new() };
+        let last_quad = self.last_quad(step)?;
         let state = self.history.state();
         let table = &selecting.table;
         let rows: Vec<Row> = table.in_order().into_iter().map(|place| table.rows[place]).collect();
@@ -121,10 +122,28 @@ impl Worker {
             base,
             so_far,
             attempts,
+            last_quad,
             next: explain::next(state, &selecting),
             selecting,
             verdict,
             took: since.elapsed(),
+        })
+    }
+
+    /// The last quadrilateral that the front formed up to the current step, until the next base is selected.
+    fn last_quad(&self, step: u64) -> Result<Option<ElementId>, Fault> {
+        let state = self.history.state();
+        let formed = match state.phase() {
+            Phase::Select => {
+                let kinds = [EventKind::Formed, EventKind::BaseSelected];
+                self.history.log().last_of(step, |kind| kinds.contains(&kind))
+            }
+            phase => return Ok(phase.last_formed()),
+        };
+        let event = formed.map(|step| self.history.event(step)).transpose()?.flatten();
+        Ok(match event {
+            Some(Event::Formed { element, .. }) if state.mesh.has_element(element) => Some(element),
+            _ => None,
         })
     }
 

@@ -8,6 +8,7 @@ use crate::app::command_line::Overrides;
 use crate::app::window::command::Command;
 use crate::app::window::layout::Pane;
 use crate::app::window::pair::{PairCommand, Which};
+use crate::app::window::presentation::Chrome;
 use crate::app::window::session::{Direction, Goal, Opened, Session, Source};
 use crate::app::window::state::pair::{Pair, ShownDifference};
 use crate::app::window::state::{Opening, Overlay, ViewKind};
@@ -120,6 +121,7 @@ impl State {
         match command {
             Command::Fit | Command::LookFrom(_) | Command::Figures | Command::Notes => Scope::Both,
             Command::Escape if self.view.overlay != Overlay::Nothing || self.run.import.is_some() => Scope::Window,
+            Command::Escape if self.view.chrome != Chrome::Panels => Scope::Window,
             Command::Escape if self.view.figure_panel || self.view.notes => Scope::Both,
             command if command.is_of_the_window() => Scope::Window,
             _ => Scope::Active,
