@@ -54,9 +54,8 @@ fn rest(window: &mut Window) {
 #[test]
 fn a_presentation_shows_the_view_and_the_sentence_alone_and_a_clicker_steps_it() {
     let Some(mut window) = window("example1") else { return };
-    for label in ["Case", "View", "Fit the mesh to the view", "Front", "Inspector"] {
-        let is_there = window.query_all_by_label(label).next().is_some();
-        assert_eq!(is_there, label != "Fit the mesh to the view", "{label}");
+    for label in ["Case", "View", "Front", "Inspector", "Step forward (operation)"] {
+        assert!(window.query_all_by_label(label).next().is_some(), "{label}");
     }
     press(&mut window, Modifiers::SHIFT, Key::F5);
     assert_eq!(chrome(&window), Chrome::Presentation);
@@ -167,7 +166,8 @@ fn the_window_is_the_same_to_the_pixel_after_a_presentation() {
     press(&mut window, NONE, Key::PageUp);
     rest(&mut window);
     let during = picture(&mut window, "presentation-during");
-    assert!(difference(&before, &during) > 0.3);
+    let apart = difference(&before, &during);
+    assert!(apart > 0.1, "the panels are away: {apart}");
     press(&mut window, NONE, Key::Escape);
     apply(&mut window, Command::Fit);
     rest(&mut window);
@@ -188,7 +188,8 @@ fn the_camera_goes_where_the_decision_is_and_the_spotlight_dims_what_is_far_from
         let moment = state.run().moment.clone().unwrap();
         let decision = moment.decision();
         let nodes: Vec<_> = decision.letters().map(|(node, _)| node).collect();
-        assert_eq!(nodes.len(), if modifiers == NONE { 4 } else { 2 });
+        let expected = if modifiers == NONE { 4 } else { 2 };
+        assert_eq!(nodes.len(), expected, "step {}, {:?}", moment.step, moment.event);
         let view = state.view().plane;
         let places: Vec<_> =
             nodes.iter().map(|n| view.camera.unwrap().project(moment.mesh.uv(*n).extend(0.0), view.size)).collect();

@@ -267,7 +267,7 @@ fn no_text_of_a_lesson_is_cut_or_covered() {
                 if let Some(posed) = posed {
                     posed.hints.iter().for_each(|_| harness.state_mut().apply(Command::Study(StudyCommand::Hint)));
                     look(&mut harness, &mut found);
-                    harness.state_mut().apply(Command::Study(StudyCommand::ShowAnswer));
+                    harness.state_mut().apply(Command::Study(StudyCommand::Continue));
                     until(&mut harness, "the answer is judged", |harness| {
                         harness.state().state.study().is_some_and(|study| study.is_answered())
                     });

@@ -62,6 +62,10 @@ fn documented_command_lines_are_accepted() {
         "quadfront open bracket.stl --use shape --feature-angle 30",
         "quadfront open example1 --paper --set c=1.5 --set size_scale=0.5",
         "quadfront open two-faces --face left --set layers=2",
+        "quadfront open example2 --predict seed=7,count=10",
+        "quadfront open example2 --predict seed=7,kinds=segment+top",
+        "quadfront lesson --open",
+        "quadfront lesson figure-14 --open",
     ] {
         assert!(Cli::try_parse_from(line.split(' ')).is_ok(), "{line}");
     }
@@ -82,6 +86,8 @@ fn documented_command_lines_are_accepted() {
         "quadfront animate a --every 0 -o a.gif",
         "quadfront animate a --rate 60 -o a.gif",
         "quadfront animate a --from end -o a.gif",
+        "quadfront open a --predict seed=x",
+        "quadfront lesson a --open --json",
     ] {
         assert!(Cli::try_parse_from(line.split(' ')).is_err(), "{line}");
     }

@@ -7,7 +7,7 @@ mod measures;
 mod refused;
 mod study;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use eframe::egui::{Align2, Color32, FontId, Galley, Painter, Pos2, Rect, Ui, Vec2};
@@ -108,6 +108,7 @@ pub fn show(
         now,
         labels: BTreeMap::new(),
         type_scale: audience.map_or(1.0, |audience| audience.type_scale),
+        numbers_letters: state.shown_study().is_some(),
     };
     let decision = Decision::of(&moment.phase);
     if which == ViewRole::Lens {
@@ -188,6 +189,8 @@ struct Labels<'a> {
     now: f64,
     /// How much larger all of them are than in the window.
     type_scale: f32,
+    /// Whether the letters have the numbers of their nodes.
+    numbers_letters: bool,
 }
 
 impl Labels<'_> {
@@ -273,16 +276,19 @@ impl Labels<'_> {
 
     /// The letters A, B, C and D, on the outer side of their nodes.
     fn letters(&mut self, decision: &Decision) {
-        let letters: Vec<(Pos2, char)> = decision.letters().filter_map(|(n, c)| Some((self.place(n)?, c))).collect();
+        let letters: Vec<(Pos2, NodeId, char)> =
+            decision.letters().filter_map(|(n, c)| Some((self.place(n)?, n, c))).collect();
         if letters.is_empty() {
             return;
         }
         let sum = letters.iter().fold(Vec2::ZERO, |sum, letter| sum + letter.0.to_vec2());
         let middle = (sum / letters.len() as f32).to_pos2();
-        for (at, letter) in letters {
+        for (at, node, letter) in letters {
             let away = (at - middle).normalized();
             let away = if away.x.is_nan() || away == Vec2::ZERO { Vec2::new(0.0, -1.0) } else { away };
-            let (text, font, colour) = (letter.to_string(), theme::semibold(13.0), ink(self.palette.accent));
+            // Answers name nodes by their numbers.
+            let text = if self.numbers_letters { format!("{letter} {}", node.0) } else { letter.to_string() };
+            let (font, colour) = (theme::semibold(13.0), ink(self.palette.accent));
             self.label(at + 17.0 * self.type_scale * away, Align2::CENTER_CENTER, &text, font, colour);
         }
     }
@@ -357,7 +363,10 @@ impl Labels<'_> {
     fn node_ids(&mut self, decision: &Decision) {
         let mesh = &self.moment.mesh;
         let scale = self.frame.camera.points_per_unit();
-        for node in mesh.nodes() {
+        // Those of the front come first: what is asked and said is about them.
+        let on_front: BTreeSet<NodeId> = self.moment.front.iter().map(|segment| segment.a).collect();
+        let others = mesh.nodes().filter(|node| !on_front.contains(node));
+        for node in on_front.iter().copied().chain(others) {
             let (Some(at), Some(spot)) = (self.place(node), self.scene.spot(node)) else { continue };
             let lettered = decision.letters().any(|letter| letter.0 == node);
             if lettered || !self.frame.rect.contains(at) {

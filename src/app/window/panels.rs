@@ -128,8 +128,8 @@ pub fn inset() -> Frame {
     Frame::NONE.inner_margin(Margin::symmetric(14, 8))
 }
 
-/// A sentence in so many lines, in the first of some font sizes in which it fits, and shortened in the last one where it
-/// fits in none.
+/// A sentence in so many lines, in the first of some font sizes in which it fits, and shortened in the last one where
+/// it fits in none.
 pub fn in_lines(
     painter: &Painter,
     text: &str,

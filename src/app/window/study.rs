@@ -26,7 +26,7 @@ pub enum StudyCommand {
     Predict,
     /// Predict the answers to a series of questions.
     PredictSeries(Series),
-    /// Go on: to the next question, the next part, the next lesson.
+    /// Go on: show the answer to an open question, or go to the next question, part or lesson.
     Continue,
     /// Go to the part before this one.
     PartBack,
@@ -38,8 +38,6 @@ pub enum StudyCommand {
     AnswerText(String),
     /// Take the next hint.
     Hint,
-    /// Show the answer.
-    ShowAnswer,
     /// Turn the state into the whole window, or come back from there.
     Explore,
     /// Go back to the state that is spoken of.
@@ -70,7 +68,6 @@ impl StudyCommand {
             StudyCommand::Answer(answer) => format!("Answer {}", answer.words()),
             StudyCommand::AnswerText(text) => format!("Answer {text}"),
             StudyCommand::Hint => "Hint".into(),
-            StudyCommand::ShowAnswer => "Show the answer".into(),
             StudyCommand::Explore => "Explore freely, or back to the lesson".into(),
             StudyCommand::Return => "Back to what is spoken of".into(),
             StudyCommand::PointAt(_) => "Point at what words mean".into(),

@@ -37,7 +37,7 @@ use crate::render::gpu::{Light, Painter, VIEWS, View};
 use crate::render::palette::{Palette, Rgba};
 use crate::render::pick;
 use crate::render::scene::{Decision, Form, Outlined, Scene, Shading};
-use following::Places;
+use following::{LEAST, Places};
 use stage::Stage;
 
 /// A view beside the main one.
@@ -54,9 +54,11 @@ const LENS: usize = 1;
 const WHOLE: usize = 2;
 const BESIDE: usize = 3;
 
+/// A place or a direction of a node.
+type OfNode = fn(&Mesh, NodeId) -> DVec3;
+
 /// Where nodes lie in the plane, which faces the view however it is turned there.
-const IN_PLANE: Places<fn(&Mesh, NodeId) -> DVec3, fn(&Mesh, NodeId) -> DVec3> =
-    Places { place: |mesh, n| mesh.uv(n).extend(0.0), normal: |_, _| DVec3::ZERO };
+const IN_PLANE: Places<OfNode, OfNode> = Places { place: |mesh, n| mesh.uv(n).extend(0.0), normal: |_, _| DVec3::ZERO };
 
 /// All views of a run, and the two scenes that they share: one of the plane and one in space.
 #[derive(Default)]
@@ -215,7 +217,11 @@ impl Views {
         size: DVec2,
         places: &Places<P, N>,
     ) -> Option<Camera> {
-        let follows = self.audience.map_or(state.workspace().follows, |audience| audience.follows);
+        let (follows, least) = match self.audience {
+            None => (state.workspace().follows, LEAST[0]),
+            Some(audience) => (audience.follows, LEAST[1]),
+        };
+        let follows = follows.then_some(least);
         self.following.guide(ui, state, follows, moment, camera, size, places)
     }
 

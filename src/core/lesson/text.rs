@@ -7,7 +7,6 @@ use super::equation::Equation;
 use super::names::Names;
 use super::value::Quantity;
 use crate::core::fault::Fault;
-use crate::core::kernel::spelling::suggestion;
 
 /// How a piece of text is set.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -117,7 +116,7 @@ impl Reading {
         while let Some((before, after)) = rest.split_once("{{") {
             let Some((name, after)) = after.split_once("}}") else { break };
             self.plain(before);
-            let quantity = quantity(name)?;
+            let quantity = Quantity::read(name)?;
             self.pieces.push(if self.bold > 0 { Piece::LitValue(quantity) } else { Piece::Value(quantity) });
             rest = after;
         }
@@ -149,17 +148,6 @@ fn target(url: &str) -> Result<Names, Fault> {
         .strip_prefix("light:")
         .ok_or_else(|| Fault::new("A link in a lesson lights something, and leads nowhere").remedy(example))?;
     Names::parse(&names.replace("%20", " "))
-}
-
-/// A number of the state by its name.
-pub(super) fn quantity(name: &str) -> Result<Quantity, Fault> {
-    let name = name.trim();
-    Quantity::ALL.into_iter().find(|quantity| quantity.name() == name).ok_or_else(|| {
-        let known = || Quantity::ALL.iter().map(|quantity| quantity.name());
-        let remedy = suggestion(name, known());
-        let remedy = remedy.unwrap_or_else(|| format!("Known are {}", known().collect::<Vec<_>>().join(", ")));
-        Fault::new(format!("There is no number {{{{{}}}}}", super::attributes::shortened(name))).remedy(remedy)
-    })
 }
 
 /// The words of some blocks, as a reader counts them: equations are not words.

@@ -1,7 +1,10 @@
 //! Numbers of a state that a text puts in, such as `{{theta_A}}`.
 
+use super::attributes::shortened;
 use super::subject::Subject;
+use crate::core::fault::Fault;
 use crate::core::kernel::number::{degrees, fixed, grouped, size};
+use crate::core::kernel::spelling::suggestion;
 use crate::core::kernel::worded::worded;
 use crate::core::mesh::NodeId;
 use crate::core::run::FrontTable;
@@ -62,6 +65,17 @@ worded! {
 }
 
 impl Quantity {
+    /// Reads the name of a number; the fault has no place yet.
+    pub(super) fn read(name: &str) -> Result<Quantity, Fault> {
+        let name = name.trim();
+        Quantity::ALL.into_iter().find(|quantity| quantity.name() == name).ok_or_else(|| {
+            let known = || Quantity::ALL.iter().map(|quantity| quantity.name());
+            let remedy = suggestion(name, known());
+            let remedy = remedy.unwrap_or_else(|| format!("Known are {}", known().collect::<Vec<_>>().join(", ")));
+            Fault::new(format!("There is no number {{{{{}}}}}", shortened(name))).remedy(remedy)
+        })
+    }
+
     /// Its text at a state; `None` where the state does not have it.
     pub(super) fn text(self, subject: &Subject) -> Option<String> {
         let Subject { state, .. } = subject;

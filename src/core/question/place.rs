@@ -5,8 +5,8 @@ use crate::core::convert::{Event, LookedAt};
 use crate::core::mesh::{Mesh, NodeId};
 use crate::core::run::{Selecting, Watched};
 
-/// How many of the segments that come first are shown.
-const FIRST: usize = 12;
+/// How many of the segments that come first are shown: so few that they can be told apart where they are far apart.
+const FIRST: usize = 4;
 
 /// The nodes of the segments that would come first.
 pub(super) fn of_selection(selecting: &Selecting) -> Vec<NodeId> {

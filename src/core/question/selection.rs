@@ -134,7 +134,8 @@ pub(super) fn hints_to_segment(selecting: &Selecting) -> Vec<Hint> {
     let parameters = table.parameters();
     let [short, name] = key_name(parameters);
     let labels = |text: &dyn Fn(&Row) -> String| {
-        let rows = table.rows.iter().filter(|row| table.competes(row));
+        // The first ones get room first.
+        let rows = table.in_order().into_iter().map(|place| &table.rows[place]).filter(|row| table.competes(row));
         rows.map(|row| ([row.a, row.b], text(row))).collect::<Vec<_>>()
     };
     let first = match parameters.selection {
@@ -158,8 +159,12 @@ pub(super) fn hints_to_segment(selecting: &Selecting) -> Vec<Hint> {
             _ => format!("class {class}: {}, {within} within reach", of.count()),
         }
     });
+    let class = |row: &Row| {
+        let reach = if row.class == 4 || table.is_within_reach(row) { "" } else { ", out of reach" };
+        format!("class {}{reach}", row.class)
+    };
     let text = format!("Segments by class: {}.", classes.collect::<Vec<_>>().join("; "));
-    vec![keys, Hint { text, labels: labels(&|row| format!("class {}", row.class)) }]
+    vec![keys, Hint { text, labels: labels(&class) }]
 }
 
 /// Hints to the class of a segment: its angles, then the bound.

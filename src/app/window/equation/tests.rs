@@ -12,11 +12,13 @@ fn in_panel(width: f32, mut look: impl FnMut(&mut Ui)) {
     // Fonts are there from the second frame on.
     for frame in 0..2 {
         let input = RawInput { screen_rect: Some(screen), ..RawInput::default() };
-        let _ = context.run_ui(input, |ui| {
+        let mut output = context.run_ui(input, |ui| {
             if frame == 1 {
                 look(ui);
             }
         });
+        // Nothing is drawn.
+        output.textures_delta.clear();
     }
 }
 
@@ -32,9 +34,10 @@ fn every_sign_is_in_the_fonts_of_equations() {
         context.set_fonts(fonts.clone());
         let mut is_there = false;
         for _ in 0..2 {
-            let _ = context.run_ui(RawInput::default(), |ui| {
+            let mut output = context.run_ui(RawInput::default(), |ui| {
                 is_there = ui.fonts_mut(|fonts| fonts.has_glyph(&font(face, 17.0), c));
             });
+            output.textures_delta.clear();
         }
         is_there
     };
@@ -81,7 +84,7 @@ fn equations_fit_the_panel_and_stand_on_their_baseline() {
 #[test]
 fn equations_are_drawn_where_their_texts_are() {
     use egui_kittest::Harness;
-    use egui_kittest::kittest::{NodeT, Queryable};
+    use egui_kittest::kittest::Queryable;
 
     if wgpu_adapter().is_none() {
         println!("skipped: there is no graphics adapter");
@@ -130,7 +133,6 @@ fn equations_are_drawn_where_their_texts_are() {
                     .count() as f32;
                 let share = inked / rect.area();
                 assert!((0.01..0.5).contains(&share), "{text}: {share}");
-                assert!(node.accesskit_node().label().is_some());
             }
         }
     }

@@ -1,5 +1,5 @@
-//! A lesson or a prediction in the whole window: what is told, what is seen, and what rule is at work; below, a sentence
-//! for the step at hand.
+//! A lesson or a prediction in the whole window: what is told, what is seen, and what rule is at work; below, a
+//! sentence for the step at hand.
 
 mod told;
 mod card;
@@ -30,6 +30,8 @@ const TEXT: f32 = 15.0;
 pub struct StudyPanel {
     /// The answer that is being typed, and the step of its question.
     typed: (u64, String),
+    /// The run and the step whose decision was brought into view.
+    seen: (u64, u64),
 }
 
 /// Shows it.
@@ -54,7 +56,7 @@ pub fn show(
         });
         CentralPanel::default().frame(Frame::NONE).show(ui, |ui| {
             ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-                inset().show(ui, |ui| told::show(ui, state, commands, palette));
+                inset().show(ui, |ui| told::show(ui, state, local, commands, palette));
             });
         });
     });

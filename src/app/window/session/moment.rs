@@ -75,7 +75,7 @@ pub struct Moment {
 impl Moment {
     /// The quadrilateral at hand: the one under way or, until the next one is begun, the one before.
     pub fn decision(&self) -> Decision {
-        match self.last_quad.filter(|quad| self.mesh.is_quad(*quad)) {
+        match self.last_quad.filter(|quad| self.mesh.has_element(*quad) && self.mesh.is_quad(*quad)) {
             Some(quad) => {
                 let [a, b, d, c] = self.mesh.quad(quad);
                 Decision { base: Some([a, b]), tops: [Some(c), Some(d)] }

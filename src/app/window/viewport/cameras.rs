@@ -30,7 +30,7 @@ pub(super) fn aim(state: &State, moment: &Moment, size: DVec2, look: Option<Look
         None | Some(Look::From(_)) => {}
         Some(Look::Fit) => (camera, is_fitted) = (fitted, true),
         Some(Look::Decision) => {
-            let ends = Decision::of(&moment.phase).base.or(state.picked_segment());
+            let ends = Decision::of(&moment.phase).base.or(state.picked_segment()).or(moment.decision().base);
             if let Some((place, scale)) =
                 ends.and_then(|ends| near(moment, ends, size, |mesh, n| mesh.uv(n).extend(0.0)))
             {

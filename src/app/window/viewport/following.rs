@@ -14,9 +14,10 @@ use crate::render::camera::Camera;
 const EASE: f64 = 0.14;
 /// The longest time that a frame counts for: after a pause the camera does not leap.
 const LONGEST: f64 = 0.05;
-/// The room that the decision has around it in the view, in points, and the least length of its base.
+/// The room that the decision has around it in the view, in points.
 const ROOM: f64 = 40.0;
-const LEAST: f64 = 24.0;
+/// The least length in points of a base that is seen well: in the window, and by an audience.
+pub(super) const LEAST: [f64; 2] = [24.0, 90.0];
 /// The room around what a lesson frames, in points.
 const FRAME: f64 = 76.0;
 /// A surface whose normal has less than this in common with the direction towards the eye is turned to the front.
@@ -51,12 +52,13 @@ pub(super) struct Places<P, N> {
 }
 
 impl Following {
-    /// The camera of this frame, where it moves; `follows` says whether it goes where the decision is.
+    /// The camera of this frame, where it moves; where it follows the decisions, `follows` is the
+    /// least length in points of a base that is seen well.
     pub(super) fn guide<P: Fn(&Mesh, NodeId) -> DVec3, N: Fn(&Mesh, NodeId) -> DVec3>(
         &mut self,
         ui: &Ui,
         state: &State,
-        follows: bool,
+        follows: Option<f64>,
         moment: &Moment,
         camera: Camera,
         size: DVec2,
@@ -72,7 +74,7 @@ impl Following {
             self.framed = None;
         }
         let now = (state.run().number, moment.step);
-        if follows {
+        if let Some(least) = follows {
             let decision = moment.decision();
             if let Some(base) = decision.base
                 && self.seen != Some(now)
@@ -80,7 +82,7 @@ impl Following {
                 self.seen = Some(now);
                 let nodes = decision.letters().map(|(node, _)| node).filter(|n| mesh.has_node(*n));
                 let at: Vec<DVec3> = nodes.map(|n| (places.place)(mesh, n)).collect();
-                self.aim = (!shows(&camera, size, &at)).then_some(Aim::Decision(base));
+                self.aim = (!shows(&camera, size, &at, least)).then_some(Aim::Decision(base));
             }
         } else {
             self.seen = None;
@@ -146,10 +148,10 @@ fn framing(camera: Camera, places: &[DVec3], normal: DVec3, size: DVec2) -> Opti
 }
 
 /// Whether a view shows some places, the first two of which are the ends of the base, with room around them.
-fn shows(camera: &Camera, size: DVec2, places: &[DVec3]) -> bool {
+fn shows(camera: &Camera, size: DVec2, places: &[DVec3], least: f64) -> bool {
     let at: Vec<DVec2> = places.iter().map(|p| camera.project(*p, size)).collect();
     let is_inside = |p: &DVec2| p.cmpgt(DVec2::splat(ROOM)).all() && p.cmplt(size - ROOM).all();
-    at.len() > 1 && at.iter().all(is_inside) && at[0].distance(at[1]) >= LEAST
+    at.len() > 1 && at.iter().all(is_inside) && at[0].distance(at[1]) >= least
 }
 
 /// A camera a share of the way nearer to another one, and whether it is there.
@@ -196,10 +198,11 @@ mod tests {
         let size = DVec2::splat(400.0);
         let camera = Camera::fit([DVec2::ZERO, DVec2::ONE], size, 0.0);
         let at = |x: f64, y: f64| DVec3::new(x, y, 0.0);
-        assert!(shows(&camera, size, &[at(0.4, 0.5), at(0.5, 0.5), at(0.5, 0.6)]));
-        assert!(!shows(&camera, size, &[at(0.4, 0.5), at(0.41, 0.5)]), "the base is a dot");
-        assert!(!shows(&camera, size, &[at(0.4, 0.5), at(0.5, 0.5), at(0.5, 0.99)]), "a top is at the edge");
-        assert!(!shows(&camera, size, &[]));
+        assert!(shows(&camera, size, &[at(0.4, 0.5), at(0.5, 0.5), at(0.5, 0.6)], 24.0));
+        assert!(!shows(&camera, size, &[at(0.4, 0.5), at(0.5, 0.5), at(0.5, 0.6)], 90.0), "too small for an audience");
+        assert!(!shows(&camera, size, &[at(0.4, 0.5), at(0.41, 0.5)], 24.0), "the base is a dot");
+        assert!(!shows(&camera, size, &[at(0.4, 0.5), at(0.5, 0.5), at(0.5, 0.99)], 24.0), "a top is at the edge");
+        assert!(!shows(&camera, size, &[], 24.0));
     }
 
     #[test]

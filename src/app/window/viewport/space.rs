@@ -151,7 +151,8 @@ fn aim(state: &State, moment: &Moment, size: DVec2, look: Option<Look>) -> (Came
             is_fitted = false;
         }
         Some(Look::Decision) => {
-            if let Some(ends) = Decision::of(&moment.phase).base.or(state.picked_segment()) {
+            let ends = Decision::of(&moment.phase).base.or(state.picked_segment()).or(moment.decision().base);
+            if let Some(ends) = ends {
                 let found = near(moment, ends, size, |mesh, n| mesh.xyz(n));
                 if let Some(((place, scale), (_, normal))) = found.zip(place_of(moment, Outlined::Edge(ends))) {
                     // What lies on the far side is turned to the front.

@@ -114,10 +114,10 @@ mod tests {
         let area = |t: &[u32]| {
             let [p, q, r] = [0, 1, 2].map(|k| mesh.vertices[t[k] as usize].pos);
             let (u, v) = (q - p, r - p);
-            0.5 * (u.x * v.y - u.y * v.x).abs()
+            0.5 * f64::from((u.x * v.y - u.y * v.x).abs())
         };
-        let covered: f32 = mesh.indices.chunks(3).map(area).sum();
-        assert!((covered - rect.area()).abs() < 1.0, "every point is covered once: {covered}");
+        let covered: f64 = mesh.indices.chunks(3).map(area).sum();
+        assert!((covered - f64::from(rect.area())).abs() < 1.0, "every point is covered once: {covered}");
         let alpha = |v: &Vertex| i32::from(v.color.a());
         assert_eq!(mesh.vertices.iter().map(alpha).min(), Some(0));
         assert!((mesh.vertices.iter().map(alpha).max().unwrap() - (SHARE * 255.0) as i32).abs() <= 2);

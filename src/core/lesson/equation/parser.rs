@@ -12,7 +12,7 @@ use super::{Class, Row, Sign, Term};
 use crate::core::fault::Fault;
 use crate::core::kernel::spelling::suggestion;
 use crate::core::lesson::attributes::shortened;
-use crate::core::lesson::text::quantity;
+use crate::core::lesson::value::Quantity;
 
 /// The deepest nesting: enough for a person, and a small stack.
 const DEEPEST: usize = 24;
@@ -201,7 +201,7 @@ impl<'t> Reading<'t> {
             return Err((Fault::new("A {{ is not closed").remedy(remedy), from));
         };
         self.at += name.len() + 4;
-        quantity(name).map(Term::Value).map_err(|fault| (fault, from))
+        Quantity::read(name).map(Term::Value).map_err(|fault| (fault, from))
     }
 
     /// `\command`, with its arguments.

@@ -156,9 +156,6 @@ fn ways_on(ui: &mut Ui, study: &Study, commands: &mut Vec<Command>, palette: &Pa
                 let more = study.hints < posed.hints.len();
                 let hint = ui.add_enabled(more, Button::new("Hint")).on_hover_text("H");
                 on_click(&hint, Command::Study(StudyCommand::Hint), commands);
-                if !study.tries.is_empty() {
-                    on_click(&ui.button("Show the answer"), Command::Study(StudyCommand::ShowAnswer), commands);
-                }
             }
             if study.lesson().is_some_and(|(_, part)| part > 0) {
                 on_click(&ui.button("Previous part"), Command::Study(StudyCommand::PartBack), commands);
@@ -179,7 +176,7 @@ fn ways_on(ui: &mut Ui, study: &Study, commands: &mut Vec<Command>, palette: &Pa
 fn onward(study: &Study) -> &'static str {
     let questions = study.taught.as_ref().map_or(0, |taught| taught.posed.len());
     match study.lesson() {
-        _ if study.is_asking() => "Skip the question",
+        _ if study.is_asking() => "Show the answer",
         Some((lesson, part)) if part + 1 == lesson.parts.len() && study.question + 1 >= questions => {
             match LESSONS.iter().position(|known| known.0 == lesson.name) {
                 Some(at) if at + 1 < LESSONS.len() => "Next lesson",

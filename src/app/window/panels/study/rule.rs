@@ -1,4 +1,4 @@
-//! The rule at work: table 1 as drawings, what decided the step at hand, and how sure one is of each rule.
+//! The rule at work: table 1 as drawings, what decided the last step, and how sure one is of each rule.
 
 use eframe::egui::{Label, Rect, Role, Sense, Ui, Vec2, WidgetInfo};
 
@@ -8,6 +8,7 @@ use crate::app::window::panels::{inspector, legend};
 use crate::app::window::session::Moment;
 use crate::app::window::state::State;
 use crate::app::window::theme::{self, ink};
+use crate::app::window::words;
 use crate::core::convert::{Event, EventKind};
 use crate::core::question::Tally;
 use crate::core::run::explain::plain;
@@ -20,7 +21,8 @@ const ROW: f32 = 24.0;
 /// Shows it.
 pub fn show(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &Palette) {
     let Some(moment) = state.run().moment.clone() else { return };
-    heading(ui, "Table 1", "which segment comes next", palette);
+    let rect = words::degrees(moment.parameters.theta_rect);
+    heading(ui, "Table 1", &format!("which segment comes next, \u{3b8}rect = {rect}\u{b0}"), palette);
     legend::table(ui, state, palette);
     decision(ui, state, &moment, commands, palette);
     let learned = state.workspace().learned.by_rule();
@@ -33,7 +35,7 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &P
 /// What the step at hand looked at, and why it did what it did.
 fn decision(ui: &mut Ui, state: &State, moment: &Moment, commands: &mut Vec<Command>, palette: &Palette) {
     let Some(event) = &moment.event else { return };
-    heading(ui, "This decision", section_of(event.kind()), palette);
+    heading(ui, "The last step", section_of(event.kind()), palette);
     if inspector::candidates_of_base(ui, state, moment, commands, palette) {
         return;
     }

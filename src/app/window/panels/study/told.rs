@@ -6,7 +6,7 @@ use std::ops::Range;
 use eframe::egui::text::{LayoutJob, TextFormat};
 use eframe::egui::{Align, Label, Layout, Response, RichText, Role, Sense, Ui, Vec2, WidgetInfo};
 
-use super::{TEXT, heading};
+use super::{StudyPanel, TEXT, heading};
 use crate::app::window::command::Command;
 use crate::app::window::equation::equation;
 use crate::app::window::panels::{note, on_click, part};
@@ -26,7 +26,7 @@ const INDENT: f32 = 16.0;
 const EQUATION: f32 = 17.0;
 
 /// Shows it.
-pub fn show(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &Palette) {
+pub fn show(ui: &mut Ui, state: &State, local: &mut StudyPanel, commands: &mut Vec<Command>, palette: &Palette) {
     let Some(study) = state.study() else { return };
     match &study.subject {
         Subject::Lesson { lesson, part: at } => {
@@ -47,7 +47,7 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &P
     if let Some(scene) = study.taught.as_ref().and_then(|taught| taught.scene.as_ref()) {
         away(ui, state, scene, commands, palette);
     }
-    where_we_are(ui, state, study, commands, palette);
+    where_we_are(ui, state, study, local, commands, palette);
 }
 
 /// The line above a heading: what it is of, and how far one is.
@@ -141,12 +141,27 @@ fn show_block(
 ) {
     match (block, set) {
         (_, Some(set)) => {
-            ui.horizontal_wrapped(|ui| {
-                ui.add_space(INDENT);
-                equation(ui, set, EQUATION, ink(palette.strong));
-                ui.add_space(GAP);
-                said(ui, pieces, commands, palette);
-            });
+            let words: String = pieces.iter().map(|shown| shown.text.as_str()).collect();
+            let wide = ui.painter().layout_no_wrap(plain(&words), theme::regular(TEXT), ink(palette.weak)).size().x;
+            // What it says is weak, beside it where there is room, else below.
+            let is_beside = ui
+                .horizontal(|ui| {
+                    ui.add_space(INDENT);
+                    equation(ui, set, EQUATION, ink(palette.strong));
+                    let is_beside = wide + GAP <= ui.available_width();
+                    if is_beside {
+                        ui.add_space(GAP);
+                        text(ui, pieces, palette.weak, commands, palette);
+                    }
+                    is_beside
+                })
+                .inner;
+            if !is_beside {
+                ui.horizontal(|ui| {
+                    ui.add_space(INDENT);
+                    text(ui, pieces, palette.weak, commands, palette);
+                });
+            }
         }
         (Block::Item(_), None) => {
             ui.horizontal_top(|ui| {
@@ -157,17 +172,6 @@ fn show_block(
         }
         (_, None) => text(ui, pieces, palette.text, commands, palette),
     }
-}
-
-/// What an equation says, in weak text beside it where there is room, else below.
-fn said(ui: &mut Ui, pieces: &[Shown], commands: &mut Vec<Command>, palette: &Palette) {
-    let words: String = pieces.iter().map(|shown| shown.text.as_str()).collect();
-    let wide = ui.painter().layout_no_wrap(plain(&words), theme::regular(TEXT), ink(palette.weak)).size().x;
-    if wide > ui.available_size_before_wrap().x {
-        ui.end_row();
-        ui.add_space(INDENT);
-    }
-    text(ui, pieces, palette.weak, commands, palette);
 }
 
 /// Text with words that are lit, and light what they mean while the pointer is on them.
@@ -182,7 +186,7 @@ fn text(ui: &mut Ui, pieces: &[Shown], colour: Rgba, commands: &mut Vec<Command>
         append(&mut job, shown, colour, palette);
         meant.push((from..job.text.chars().count(), shown));
     }
-    job.wrap.max_width = ui.available_size_before_wrap().x.max(1.0);
+    job.wrap.max_width = ui.available_width().max(1.0);
     let galley = ui.painter().layout_job(job);
     let said = plain(&pieces.iter().map(|shown| shown.text.as_str()).collect::<String>());
     let (rect, response) = ui.allocate_exact_size(galley.size(), Sense::hover());
@@ -229,7 +233,14 @@ fn away(ui: &mut Ui, state: &State, scene: &Scene, commands: &mut Vec<Command>, 
 }
 
 /// The decisions that led to the state, each with a link to its step.
-fn where_we_are(ui: &mut Ui, state: &State, study: &Study, commands: &mut Vec<Command>, palette: &Palette) {
+fn where_we_are(
+    ui: &mut Ui,
+    state: &State,
+    study: &Study,
+    local: &mut StudyPanel,
+    commands: &mut Vec<Command>,
+    palette: &Palette,
+) {
     let Some(moment) = &state.run().moment else { return };
     let known = study.decisions.as_ref().filter(|(step, _)| *step == moment.step);
     let Some((_, decisions)) = known else {
@@ -245,6 +256,10 @@ fn where_we_are(ui: &mut Ui, state: &State, study: &Study, commands: &mut Vec<Co
     for decision in decisions {
         let is_now = decision.step == moment.step;
         let response = row(ui, &decision.text, is_now, palette);
+        let now = (state.run().number, moment.step);
+        if is_now && std::mem::replace(&mut local.seen, now) != now {
+            response.scroll_to_me(None);
+        }
         on_click(&response, Command::Go(Goal::Step(decision.step)), commands);
     }
 }

@@ -9,8 +9,10 @@ use crate::app::window::state::Wanted;
 use crate::app::window::study::{Study, StudyCommand, Subject, answer_of};
 use crate::core::formats::save::save;
 use crate::core::lesson::built_in::LESSONS;
-use crate::core::question::{Answer, Series};
+use crate::core::mesh::NodeId;
+use crate::core::question::{Answer, Kind, Series};
 use crate::core::run::explain::plain;
+use crate::render::scene::Decision;
 
 impl State {
     /// Does what the learner asks for.
@@ -45,12 +47,6 @@ impl State {
             StudyCommand::Part(part) => self.teach(part),
             StudyCommand::Answer(answer) => self.answer(answer, false),
             StudyCommand::AnswerText(text) => self.answer_text(&text),
-            StudyCommand::ShowAnswer => {
-                let right = self.study.as_ref().and_then(Study::posed).map(|posed| posed.asked.answer());
-                if let Some(right) = right {
-                    self.answer(right, true);
-                }
-            }
             StudyCommand::Hint => self.change_study(|study| {
                 let all = study.posed().map_or(0, |posed| posed.hints.len());
                 study.hints = (study.hints + 1).min(all);
@@ -118,6 +114,11 @@ impl State {
         let Some(study) = self.study.as_mut().filter(|study| !study.explores) else { return };
         // What comes next is on its way.
         let Some(taught) = study.taught.clone() else { return };
+        // Nothing is left behind unanswered: the answer is shown before one goes on.
+        if let Some(posed) = study.posed().filter(|_| study.is_asking()) {
+            let right = posed.asked.answer();
+            return self.answer(right, true);
+        }
         if study.question + 1 < taught.posed.len() {
             return self.change_study(|study| study.pose(study.question + 1));
         }
@@ -190,7 +191,22 @@ impl State {
 
     fn answer_text(&mut self, text: &str) {
         let Some(kind) = self.open_question().map(|posed| posed.asked.kind) else { return };
-        match Answer::parse(kind, text) {
+        // Nodes of the quadrilateral under way may be called by their letters.
+        let letters: Vec<(NodeId, char)> = self
+            .run
+            .moment
+            .iter()
+            .flat_map(|moment| Decision::of(&moment.phase).letters().collect::<Vec<_>>())
+            .collect();
+        let numbered = |part: &str| {
+            let named = letters.iter().find(|(_, letter)| part.trim().eq_ignore_ascii_case(&letter.to_string()));
+            named.map_or_else(|| part.to_owned(), |(node, _)| node.0.to_string())
+        };
+        let text = match kind {
+            Kind::Segment | Kind::Edge | Kind::Node => text.split('-').map(numbered).collect::<Vec<_>>().join("-"),
+            _ => text.to_owned(),
+        };
+        match Answer::parse(kind, &text) {
             Ok(answer) => self.answer(answer, false),
             Err(fault) => self.change_study(|study| study.remark = Some(plain(&fault.to_string()))),
         }
