@@ -11,7 +11,8 @@ mod window_harness;
 use eframe::egui::{Key, Modifiers, Pos2, Vec2};
 use egui_kittest::kittest::Queryable;
 use pictures::{difference, picture};
-use quadfront::app::window::{App, Chrome, Command, Goal, PairCommand, PresentationCommand, Source, Which};
+use quadfront::app::window::{App, Chrome, Command, Direction, Goal, PairCommand, PresentationCommand, Source, Which};
+use quadfront::core::convert::EventKind;
 use quadfront::core::run::explain::plain;
 use window_harness::{LAPTOP, Window, apply, has_adapter, settle, start, type_over, until};
 
@@ -180,15 +181,15 @@ fn the_camera_goes_where_the_decision_is_and_the_spotlight_dims_what_is_far_from
     let Some(mut window) = window("example1") else { return };
     apply(&mut window, Command::Go(Goal::ToQuads(60)));
     press(&mut window, Modifiers::SHIFT, Key::F5);
-    // After a quadrilateral, and within one.
-    for modifiers in [NONE, Modifiers::COMMAND] {
-        press(&mut window, modifiers, Key::ArrowRight);
+    // After a quadrilateral, and within one: a clicker stops where the next base is selected.
+    let formed = Command::Go(Goal::Kind(EventKind::Formed, Direction::Forward));
+    for (command, expected) in [(formed, 4), (Command::Go(Goal::Quads(1)), 2)] {
+        apply(&mut window, command);
         rest(&mut window);
         let state = &window.state().state;
         let moment = state.run().moment.clone().unwrap();
         let decision = moment.decision();
         let nodes: Vec<_> = decision.letters().map(|(node, _)| node).collect();
-        let expected = if modifiers == NONE { 4 } else { 2 };
         assert_eq!(nodes.len(), expected, "step {}, {:?}", moment.step, moment.event);
         let view = state.view().plane;
         let places: Vec<_> =

@@ -283,13 +283,14 @@ impl Labels<'_> {
         }
         let sum = letters.iter().fold(Vec2::ZERO, |sum, letter| sum + letter.0.to_vec2());
         let middle = (sum / letters.len() as f32).to_pos2();
+        let room = if self.numbers_letters { 24.0 } else { 17.0 };
         for (at, node, letter) in letters {
             let away = (at - middle).normalized();
             let away = if away.x.is_nan() || away == Vec2::ZERO { Vec2::new(0.0, -1.0) } else { away };
             // Answers name nodes by their numbers.
             let text = if self.numbers_letters { format!("{letter} {}", node.0) } else { letter.to_string() };
             let (font, colour) = (theme::semibold(13.0), ink(self.palette.accent));
-            self.label(at + 17.0 * self.type_scale * away, Align2::CENTER_CENTER, &text, font, colour);
+            self.label(at + room * self.type_scale * away, Align2::CENTER_CENTER, &text, font, colour);
         }
     }
 
