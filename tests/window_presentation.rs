@@ -194,9 +194,9 @@ fn the_camera_goes_where_the_decision_is_and_the_spotlight_dims_what_is_far_from
         let view = state.view().plane;
         let places: Vec<_> =
             nodes.iter().map(|n| view.camera.unwrap().project(moment.mesh.uv(*n).extend(0.0), view.size)).collect();
-        for at in &places {
-            assert!(at.cmpgt(glam::DVec2::ZERO).all() && at.cmplt(view.size).all(), "{at} of {}", view.size);
-        }
+        // The base is seen, and its tops where the base can be read beside them.
+        let is_seen = |at: &glam::DVec2| at.cmpgt(glam::DVec2::ZERO).all() && at.cmplt(view.size).all();
+        assert!(places[..2].iter().all(is_seen), "{places:?} of {}", view.size);
         assert!(places[0].distance(places[1]) > 20.0, "the base is seen");
         let lit = picture(&mut window, "presentation-spotlight");
         press(&mut window, NONE, Key::S);
@@ -209,7 +209,7 @@ fn the_camera_goes_where_the_decision_is_and_the_spotlight_dims_what_is_far_from
             let at = 4 * (y as usize * LAPTOP.x as usize + x as usize);
             (0..3).map(|k| lit[at + k].abs_diff(plain[at + k])).max().unwrap()
         };
-        for at in &places {
+        for at in places.iter().filter(|at| is_seen(at)) {
             assert!(apart(at.x, at.y) <= 2, "{at}");
         }
     }
