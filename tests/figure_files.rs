@@ -4,6 +4,8 @@
 
 #[path = "common/environment.rs"]
 mod environment;
+#[path = "common/xor_shift.rs"]
+mod xor_shift;
 
 use std::path::Path;
 use std::process::{Command, Output};
@@ -13,6 +15,7 @@ use quadfront::core::convert::EventKind;
 use quadfront::core::progress::Nobody;
 use quadfront::core::record::{figure, run_file};
 use quadfront::core::run::{History, Run, explain};
+use xor_shift::XorShift;
 
 fn run(arguments: &[&str], folder: &Path) -> Output {
     Command::new(env!("CARGO_BIN_EXE_quadfront")).args(arguments).current_dir(folder).output().unwrap()
@@ -350,13 +353,8 @@ fn figures_with_bytes_changed_at_random_never_panic() {
     // Paths after the run do not matter here.
     let whole = &whole[..whole.windows(5).position(|w| w == b"<path").unwrap()];
     let text = figure::text_in(whole).unwrap();
-    let mut seed = 0x9E37_79B9_7F4A_7C15_u64;
-    let mut random = |below: usize| {
-        seed ^= seed << 13;
-        seed ^= seed >> 7;
-        seed ^= seed << 17;
-        (seed % below as u64) as usize
-    };
+    let mut source = XorShift::of(1);
+    let mut random = |below: usize| source.below(below);
     let rounds = environment::number("QUADFRONT_SOAK_ROUNDS").unwrap_or(3000);
     let mut read = 0;
     for _ in 0..rounds {

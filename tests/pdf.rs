@@ -9,11 +9,14 @@
 
 #[path = "common/environment.rs"]
 mod environment;
+#[path = "common/xor_shift.rs"]
+mod xor_shift;
 
 use std::path::Path;
 use std::process::{Command, Output};
 
 use quadfront::core::record::figure;
+use xor_shift::XorShift;
 
 fn run(words: &[&str], folder: &Path) -> Output {
     Command::new(env!("CARGO_BIN_EXE_quadfront")).args(words).current_dir(folder).output().unwrap()
@@ -272,13 +275,8 @@ fn a_damaged_pdf_is_told_and_never_a_crash() {
         );
     }
     // Bytes changed at random around the run.
-    let mut seed = 0x9E37_79B9_7F4A_7C15_u64;
-    let mut random = |below: usize| {
-        seed ^= seed << 13;
-        seed ^= seed >> 7;
-        seed ^= seed << 17;
-        (seed % below as u64) as usize
-    };
+    let mut source = XorShift::of(1);
+    let mut random = |below: usize| source.below(below);
     let rounds = environment::number("QUADFRONT_SOAK_ROUNDS").unwrap_or(3000);
     let (mut same, mut told) = (0, 0);
     for _ in 0..rounds {

@@ -16,6 +16,7 @@ use quadfront::core::progress::Nobody;
 use quadfront::core::question::{Answer, Asked, Kind, Series, Verdict, draw};
 use quadfront::core::run::History;
 use quadfront::core::run::explain::plain;
+use quadfront::render::scene::Outlined;
 use window_harness::{LAPTOP, Window, apply, has_adapter, settle, start, type_over, until};
 
 fn window(source: Source) -> Option<Window> {
@@ -184,6 +185,10 @@ fn a_click_in_the_view_answers_and_what_is_no_answer_is_told() {
     let mut history = History::open(lesson.run(), &mut Nobody).unwrap();
     let scene = lesson.scene(0, &mut history).unwrap();
     let Answer::Edge(right) = scene.asked[0].answer() else { panic!("an edge is asked for") };
+    // A node is no answer here: the card says so, and the next answer counts.
+    apply(&mut window, Command::Pick(Some(Outlined::Node(right[0]))));
+    until(&mut window, "it is told", |window| has(window, "is answered by an edge"));
+    assert!(window.state().state.study().unwrap().tries.is_empty());
     let at = place_of(&window, right);
     window.hover_at(at);
     window.run_steps(2);
@@ -216,14 +221,21 @@ fn a_click_in_the_view_answers_and_what_is_no_answer_is_told() {
     assert!(window.state().state.document().edits.is_empty(), "the run is that of the lesson");
     // A triangle is no answer to a question with choices: the card says what to do.
     let triangle = outlined_triangle(&window);
+    // What brings the changes back leads to the whole window: the lesson is not about that run.
+    apply(&mut window, Command::Undo);
+    assert!(!window.state().state.document().edits.is_empty() && window.query_by_label("Inspector").is_some());
+    window.key_press(Key::E);
+    window.run_steps(2);
+    settle(&mut window);
+    assert!(window.state().state.document().edits.is_empty() && step(&window) == step_of_part);
     apply(&mut window, Command::Pick(Some(triangle)));
     assert!(has(&window, "Choose one of the answers."));
     assert!(window.state().state.study().unwrap().tries.is_empty());
 }
 
-fn outlined_triangle(window: &Window) -> quadfront::render::scene::Outlined {
+fn outlined_triangle(window: &Window) -> Outlined {
     let mesh = &window.state().state.run().moment.as_ref().unwrap().mesh;
-    quadfront::render::scene::Outlined::Element(mesh.elements().next().unwrap())
+    Outlined::Element(mesh.elements().next().unwrap())
 }
 
 #[test]
@@ -293,6 +305,20 @@ fn any_state_of_any_run_asks_what_comes_next() {
     }
     let score = &window.state().state.study().unwrap().score;
     assert_eq!((score.tally().right, score.streak()), (8, 8));
+    click(&mut window, "Explore freely");
+    // A run that is changed is asked about as it is then.
+    apply(&mut window, Command::Go(Goal::ToQuads(20)));
+    apply(&mut window, Command::Set("c", "1.5".to_owned()));
+    window.key_press(Key::E);
+    window.run_steps(2);
+    taught(&mut window);
+    let mut changed = History::open(window.state().state.current_run().unwrap(), &mut Nobody).unwrap();
+    changed.extend(u64::MAX);
+    let kind = window.state().state.study().unwrap().posed().unwrap().asked.kind;
+    changed.seek(step(&window)).unwrap();
+    let right = Asked::of(&mut changed, kind, None).unwrap().answer();
+    give(&mut window, right);
+    assert!(has(&window, "Yes."));
     click(&mut window, "Explore freely");
     apply(&mut window, Command::Study(StudyCommand::Leave));
     assert!(window.state().state.study().is_none() && !has(&window, "Back to the question"));

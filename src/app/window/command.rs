@@ -340,7 +340,12 @@ impl Command {
                 | Command::Palette
                 | Command::Help
                 | Command::Screenshot
-                | Command::Study(StudyCommand::Open(_) | StudyCommand::Resume | StudyCommand::PointAt(_))
+                | Command::Study(
+                    StudyCommand::Open(_)
+                        | StudyCommand::Resume
+                        | StudyCommand::PredictSeries(_)
+                        | StudyCommand::PointAt(_)
+                )
         )
     }
 

@@ -118,8 +118,8 @@ pub enum SessionNews {
     Drawn(Vec<Drawn>),
     /// No question can be asked from there on.
     NoQuestion,
-    /// An answer to a question, judged.
-    Judged(Arc<Asked>, Answer, Judged),
+    /// An answer to a question, judged, or why it is none.
+    Judged(Arc<Asked>, Answer, Result<Judged, Fault>),
     /// The decisions that led to the state of a step.
     Decisions(u64, Vec<Decision>),
     /// There is no such step, with the number of requests that this answers.

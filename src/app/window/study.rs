@@ -95,8 +95,8 @@ impl StudyCommand {
 /// What is learnt.
 #[derive(Clone, Debug)]
 pub enum Subject {
-    /// A lesson, at one of its parts.
-    Lesson { lesson: Arc<Lesson>, part: usize },
+    /// A lesson, by its name in the tour or the path of its file, at one of its parts.
+    Lesson { lesson: Arc<Lesson>, source: String, part: usize },
     /// What comes next along the run, question by question; or a series with the questions that were drawn, at one of
     /// them. None are drawn until the whole run is recorded.
     Prediction { series: Option<Series>, drawn: Vec<Drawn>, at: usize },
@@ -162,9 +162,15 @@ impl Study {
     /// The lesson, with its part.
     pub fn lesson(&self) -> Option<(&Arc<Lesson>, usize)> {
         match &self.subject {
-            Subject::Lesson { lesson, part } => Some((lesson, *part)),
+            Subject::Lesson { lesson, part, .. } => Some((lesson, *part)),
             Subject::Prediction { .. } => None,
         }
+    }
+
+    /// The place of the lesson in the tour, from 0; none for a file.
+    pub fn tour_place(&self) -> Option<usize> {
+        let Subject::Lesson { source, .. } = &self.subject else { return None };
+        built_in::LESSONS.iter().position(|known| known.0 == source)
     }
 
     /// The question at hand.

@@ -187,7 +187,7 @@ fn named(state: &State) -> Option<[String; 2]> {
     let case = &opened.run.case;
     Some(match state.shown_study().map(|study| &study.subject) {
         Some(Subject::Lesson { lesson, .. }) => {
-            let at = LESSONS.iter().position(|known| known.0 == lesson.name);
+            let at = state.study().and_then(Study::tour_place);
             let number = at.map(|at| format!("Lesson {} of {}", at + 1, LESSONS.len()));
             [number.unwrap_or_else(|| "Lesson".to_owned()), lesson.title.clone()]
         }

@@ -24,7 +24,6 @@ use crate::app::window::film::FilmCommand;
 use crate::app::window::layout::Pane;
 use crate::app::window::lists::{ListKind, RecordedSteps};
 use crate::app::window::measure::Measuring;
-use crate::app::window::pair::PairCommand;
 use crate::app::window::presentation::Chrome;
 use crate::app::window::reducing::Reducing;
 use crate::app::window::session::{Ask, Direction, Goal, Source};
@@ -46,7 +45,7 @@ impl State {
         match command {
             Command::Study(command) => {
                 if self.pair.is_some() && State::begins_study(&command) {
-                    self.apply_to_pair(PairCommand::Close);
+                    return self.notice("This needs the whole window: close the second run first.".to_owned());
                 }
                 self.apply_to_study(command);
             }
@@ -371,6 +370,7 @@ impl State {
         if document.edits != before.edits {
             self.run.recorded = false;
             self.ask(Ask::Edits(document.edits.clone()));
+            self.leave_changed_run();
         }
     }
 

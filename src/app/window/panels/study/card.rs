@@ -43,7 +43,8 @@ fn question(
     commands: &mut Vec<Command>,
     palette: &Palette,
 ) {
-    ui.add(Label::new(words_of(&posed.text, TEXT, palette)).wrap());
+    let text = format!("**{}**", posed.text.replace("**", ""));
+    ui.add(Label::new(theme::formula(&text, TEXT, ink(palette.text), ink(palette.strong))).wrap());
     let is_open = state.open_question().is_some();
     if is_open {
         part(ui, "answers", |ui| answers(ui, posed, local, commands, palette));
@@ -61,17 +62,13 @@ fn question(
     ScrollArea::vertical().max_height(MOST).stick_to_bottom(true).show(ui, |ui| {
         study.tries.iter().for_each(|one| tried(ui, one, palette));
         for hint in &posed.hints[..study.hints.min(posed.hints.len())] {
-            ui.add(Label::new(words_of(&format!("Hint: {}", hint.text), theme::BODY, palette)).wrap());
+            let text = format!("Hint: {}", hint.text);
+            ui.add(Label::new(theme::formula(&text, theme::BODY, ink(palette.text), ink(palette.strong))).wrap());
         }
         if let Some(remark) = &study.remark {
             ui.add(Label::new(note(remark, palette)).wrap());
         }
     });
-}
-
-fn words_of(text: &str, size: f32, palette: &Palette) -> eframe::egui::text::LayoutJob {
-    let text = if size == TEXT { format!("**{}**", text.replace("**", "")) } else { text.to_owned() };
-    theme::formula(&text, size, ink(palette.text), ink(palette.strong))
 }
 
 /// Choices, or what to click, with a field for those who write.
@@ -178,7 +175,7 @@ fn onward(study: &Study) -> &'static str {
     match study.lesson() {
         _ if study.is_asking() => "Show the answer",
         Some((lesson, part)) if part + 1 == lesson.parts.len() && study.question + 1 >= questions => {
-            match LESSONS.iter().position(|known| known.0 == lesson.name) {
+            match study.tour_place() {
                 Some(at) if at + 1 < LESSONS.len() => "Next lesson",
                 _ => "End of the lesson",
             }

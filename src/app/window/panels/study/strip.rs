@@ -84,7 +84,7 @@ fn sentence(ui: &mut Ui, rect: Rect, state: &State, palette: &Palette) {
 fn show_bars(ui: &mut Ui, rect: Rect, state: &State, study: &Study, commands: &mut Vec<Command>, palette: &Palette) {
     let learned = &state.workspace().learned;
     let bars: Vec<(String, Rgba, Option<StudyCommand>)> = match &study.subject {
-        Subject::Lesson { lesson, .. } if LESSONS.iter().any(|known| known.0 == lesson.name) => LESSONS
+        Subject::Lesson { lesson, .. } if study.tour_place().is_some() => LESSONS
             .iter()
             .map(|(name, _)| {
                 let is_here = *name == lesson.name;
@@ -97,7 +97,7 @@ fn show_bars(ui: &mut Ui, rect: Rect, state: &State, study: &Study, commands: &m
                 (format!("{title}{said}"), colour, (!is_here).then_some(StudyCommand::Open(name)))
             })
             .collect(),
-        Subject::Lesson { lesson, part } => (0..lesson.parts.len())
+        Subject::Lesson { lesson, part, .. } => (0..lesson.parts.len())
             .map(|k| {
                 let colour = if k == *part { palette.base } else { palette.line };
                 (lesson.parts[k].heading.clone(), colour, (k != *part).then_some(StudyCommand::Part(k)))

@@ -29,7 +29,7 @@ const EQUATION: f32 = 17.0;
 pub fn show(ui: &mut Ui, state: &State, local: &mut StudyPanel, commands: &mut Vec<Command>, palette: &Palette) {
     let Some(study) = state.study() else { return };
     match &study.subject {
-        Subject::Lesson { lesson, part: at } => {
+        Subject::Lesson { lesson, part: at, .. } => {
             let section = if lesson.section.is_empty() { String::new() } else { format!(" \u{b7} {}", lesson.section) };
             let above = format!("{}{section}", lesson.title.to_uppercase());
             head(ui, &above, &format!("{} of {}", at + 1, lesson.parts.len()), palette);

@@ -81,10 +81,10 @@ impl Worker {
             self.history.seek(asked.step)?;
             let judged = asked.judge(self.history.state(), answer)?;
             self.history.seek(at)?;
-            Ok(SessionNews::Judged(asked.clone(), answer, judged))
+            Ok(judged)
         };
         let judged = judge();
-        self.report(judged, 0);
+        self.voice.say(SessionNews::Judged(asked.clone(), answer, judged));
     }
 
     /// Reports the decisions that led to the current state.

@@ -38,6 +38,8 @@ impl State {
             matches!((&source, &self.run.import), (Source::Mesh(path, _), Some(import)) if *path == import.path);
         if !is_of_import {
             self.give_up_import();
+            // What was to begin with another run does not begin with this one.
+            self.wanted = None;
         }
         let session = Session::open(read, self.wake.clone());
         if self.run.opening.replace(Opening { source, overrides, session }).is_none() {

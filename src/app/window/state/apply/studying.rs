@@ -26,7 +26,9 @@ impl State {
             }
             StudyCommand::Predict => self.predict(),
             // The run that is asked about is the one that is being opened.
-            StudyCommand::PredictSeries(series) if self.run.is_opening() => self.wanted = Some(Wanted::Series(series)),
+            StudyCommand::PredictSeries(series) if self.run.is_opening() || self.run.import.is_some() => {
+                self.wanted = Some(Wanted::Series(series));
+            }
             StudyCommand::PredictSeries(series) => self.predict_series(series),
             StudyCommand::PointAt(things) => self.frame.pointed = things,
             StudyCommand::TellDecisions => {
@@ -98,12 +100,10 @@ impl State {
     /// Goes to a part of the lesson.
     pub(in crate::app::window::state) fn teach(&mut self, part: usize) {
         let Some(study) = &mut self.study else { return };
-        let Subject::Lesson { lesson, part: at } = &mut study.subject else { return };
+        let Subject::Lesson { lesson, source, part: at } = &mut study.subject else { return };
         *at = part.min(lesson.parts.len() - 1);
         let ask = Ask::Part(lesson.clone(), *at);
-        if let Some(Source::Lesson(name)) = &self.run.source {
-            self.workspace.learned.be_at(name, *at);
-        }
+        self.workspace.learned.be_at(source, *at);
         study.taught = None;
         study.pose(0);
         self.ask(ask);
@@ -123,7 +123,7 @@ impl State {
             return self.change_study(|study| study.pose(study.question + 1));
         }
         let ask = match &mut study.subject {
-            Subject::Lesson { lesson, part } if *part + 1 < lesson.parts.len() => {
+            Subject::Lesson { lesson, part, .. } if *part + 1 < lesson.parts.len() => {
                 let next = *part + 1;
                 return self.teach(next);
             }
@@ -142,9 +142,10 @@ impl State {
 
     /// The last part of a lesson is left: the next one of the tour follows.
     fn finish_lesson(&mut self) {
-        let Some(Source::Lesson(name)) = self.run.source.clone() else { return };
-        self.workspace.learned.finish(&name);
-        match LESSONS.iter().position(|lesson| lesson.0 == name).map(|at| LESSONS.get(at + 1)) {
+        let Some(study) = &self.study else { return };
+        let Subject::Lesson { source, .. } = &study.subject else { return };
+        self.workspace.learned.finish(source);
+        match study.tour_place().map(|at| LESSONS.get(at + 1)) {
             Some(Some((next, _))) => self.open(Source::Lesson((*next).to_owned()), Overrides::default()),
             is_last => {
                 let what = if is_last.is_some() { "The tour is done" } else { "The lesson is done" };
@@ -226,6 +227,36 @@ impl State {
         match (step, self.lesson_part()) {
             (Some(step), _) => self.go(Goal::Step(step)),
             (None, Some(part)) => self.teach(part),
+            (None, None) => self.predict_anew(),
+        }
+    }
+
+    /// The run has other edits: what was told or asked of it is no longer true. A lesson is left for the whole window
+    /// until its own run is there again; a prediction is asked anew when the learner comes back.
+    pub(super) fn leave_changed_run(&mut self) {
+        let own = self.run.opened.as_ref().map(|opened| opened.run.edits());
+        let is_own = own == Some(&self.workspace.document.edits[..]);
+        let Some(study) = &mut self.study else { return };
+        match &mut study.subject {
+            Subject::Lesson { .. } => study.explores |= !is_own,
+            Subject::Prediction { drawn, at, .. } => {
+                drawn.clear();
+                (*at, study.taught, study.explores, study.is_over) = (0, None, true, false);
+                study.pose(0);
+            }
+        }
+    }
+
+    /// Asks about the run as it is now.
+    fn predict_anew(&mut self) {
+        let Some(Study { subject: Subject::Prediction { series, .. }, .. }) = &self.study else { return };
+        match (series.clone(), self.run.moment.as_ref().map(|moment| moment.step)) {
+            (Some(series), _) => {
+                if let Some(session) = &self.run.session {
+                    session.ask(Ask::Draw(series));
+                }
+            }
+            (None, Some(step)) => self.ask(Ask::NextQuestion(step)),
             (None, None) => {}
         }
     }
@@ -243,7 +274,7 @@ impl State {
         }
     }
 
-    /// Whether lessons are closed for two runs: both need the whole window.
+    /// Whether it begins what needs the whole window.
     pub(super) fn begins_study(command: &StudyCommand) -> bool {
         matches!(
             command,

@@ -1,6 +1,6 @@
 //! What is being opened: it takes the place of what is open, or is refused.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -11,6 +11,7 @@ use crate::app::window::state::{Look, Opening, RunState, State, ViewCamera};
 use crate::app::window::words;
 use crate::core::case::built_in;
 use crate::core::fault::Fault;
+use crate::core::lesson;
 
 impl State {
     /// Takes in what the preview of an import reports; a mesh that cannot be read is given up.
@@ -77,7 +78,7 @@ impl State {
             // The window itself writes this file.
             Source::File(_) if recovered.is_some() => None,
             Source::File(path) | Source::Mesh(path, _) => Some(Watcher::of(path.clone(), self.wake.clone())),
-            Source::Lesson(name) if Path::new(name).exists() => {
+            Source::Lesson(name) if lesson::built_in::title(name).is_none() => {
                 Some(Watcher::of(PathBuf::from(name), self.wake.clone()))
             }
             Source::BuiltIn(_) | Source::Lesson(_) => None,

@@ -7,7 +7,9 @@ use crate::app::lesson;
 use crate::app::window::session::{Ask, Source, Taught};
 use crate::app::window::state::Wanted;
 use crate::app::window::study::{Study, Subject, Try};
+use crate::core::fault::Fault;
 use crate::core::question::{Answer, Asked, Drawn, Judged};
+use crate::core::run::explain::plain;
 
 impl State {
     /// A run is open: the lesson that it is of begins, or what was to be predicted.
@@ -17,13 +19,13 @@ impl State {
             (Some(Source::Lesson(name)), wanted) => match lesson::found(&name) {
                 Ok(lesson) => {
                     // A file that has changed is read again at the same part.
-                    let at = before.and_then(|study| {
-                        let (old, part) = study.lesson()?;
-                        (old.file == lesson.file).then_some(part)
+                    let at = before.and_then(|study| match study.subject {
+                        Subject::Lesson { source, part, .. } if source == name => Some(part),
+                        _ => None,
                     });
                     let part = if let Some(Wanted::Part(part)) = wanted { part } else { at.unwrap_or(0) };
                     let lesson = Arc::new(lesson);
-                    self.study = Some(Study::of(Subject::Lesson { lesson, part: 0 }));
+                    self.study = Some(Study::of(Subject::Lesson { lesson, source: name, part: 0 }));
                     self.teach(part);
                 }
                 Err(fault) => self.complain(&fault),
@@ -63,19 +65,25 @@ impl State {
     }
 
     /// An answer is judged.
-    pub(super) fn be_judged(&mut self, asked: &Arc<Asked>, answer: Answer, judged: Judged) {
-        let source = self.run.source.clone();
+    pub(super) fn be_judged(&mut self, asked: &Arc<Asked>, answer: Answer, judged: Result<Judged, Fault>) {
         let Some(study) = &mut self.study else { return };
         let is_at_hand = study.posed().is_some_and(|posed| Arc::ptr_eq(&posed.asked, asked));
         let Some(is_shown) = study.judging.take().filter(|_| is_at_hand) else { return };
+        let judged = match judged {
+            Ok(judged) => judged,
+            Err(fault) => {
+                study.remark = Some(plain(&fault.to_string()));
+                return;
+            }
+        };
         let is_first = study.tries.is_empty() && !is_shown;
         if is_first && study.score.note(asked, answer, &judged, study.hints as u32) {
             let learned = &mut self.workspace.learned;
-            match (source, study.lesson()) {
-                (Some(Source::Lesson(name)), Some((_, part))) => {
-                    learned.answer(&name, [part, study.question], judged.rule, judged.verdict);
+            match &study.subject {
+                Subject::Lesson { source, part, .. } => {
+                    learned.answer(source, [*part, study.question], judged.rule, judged.verdict);
                 }
-                _ => learned.predict(judged.rule, judged.verdict),
+                Subject::Prediction { .. } => learned.predict(judged.rule, judged.verdict),
             }
         }
         study.tries.push(Try { answer, judged, is_shown });
