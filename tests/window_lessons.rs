@@ -106,6 +106,8 @@ fn go_through(window: &mut Window, lesson: &Lesson) {
     for (k, part) in lesson.parts.iter().enumerate() {
         taught(window);
         let place = format!("{}, part {}", lesson.name, k + 1);
+        let title = format!("of {} {}", built_in::LESSONS.len(), lesson.title);
+        assert!(has(window, &title), "{place}: its title stands in the bar");
         let scene = lesson.scene(k, &mut history).unwrap();
         assert_eq!(step(window), scene.step, "{place}");
         assert!(has(window, &part.heading), "{place}: {}", part.heading);
@@ -248,13 +250,9 @@ fn what_was_learnt_is_kept_and_the_tour_goes_on_where_one_was() {
     let open = |source| start(LAPTOP, |cc| App::kept(cc, Some(source), Some(path.clone()), Lost::default()));
     let mut window = open(Source::Lesson("figure-12".to_owned()));
     settle(&mut window);
-    taught(&mut window);
+    first_question(&mut window);
     let lesson = built_in::named("figure-12").unwrap().unwrap();
     let mut history = History::open(lesson.run(), &mut Nobody).unwrap();
-    while window.state().state.study().unwrap().posed().is_none() {
-        click(&mut window, "Continue");
-        taught(&mut window);
-    }
     let part = window.state().state.study().unwrap().lesson().unwrap().1;
     let scene = lesson.scene(part, &mut history).unwrap();
     give(&mut window, scene.asked[0].answer());
@@ -272,6 +270,49 @@ fn what_was_learnt_is_kept_and_the_tour_goes_on_where_one_was() {
     assert_eq!(study.lesson().map(|(lesson, part)| (lesson.name.as_str(), part)), Some(("figure-12", part)));
     let rule = scene.asked[0].rule.words();
     assert!(has(&window, &format!("{rule}: 1 of 1 right")), "{rule}");
+}
+
+/// Opens a lesson and goes to its first question.
+fn first_question(window: &mut Window) {
+    taught(window);
+    while window.state().state.study().unwrap().posed().is_none() {
+        click(window, "Continue");
+        taught(window);
+    }
+}
+
+#[test]
+fn an_answer_that_was_shown_before_does_not_count() {
+    let Some(mut window) = window(Source::Lesson("figure-12".to_owned())) else { return };
+    first_question(&mut window);
+    let right = window.state().state.study().unwrap().posed().unwrap().asked.answer();
+    click(&mut window, "Show the answer");
+    until(&mut window, "it is shown", |window| !window.state().state.study().unwrap().tries.is_empty());
+    let part = window.state().state.study().unwrap().lesson().unwrap().1;
+    apply(&mut window, Command::Study(StudyCommand::Part(part)));
+    taught(&mut window);
+    assert!(window.state().state.study().unwrap().is_asking());
+    give(&mut window, right);
+    assert!(has(&window, "Yes."));
+    let state = &window.state().state;
+    assert_eq!(state.study().unwrap().score.tally().all(), 0);
+    assert!(state.workspace().learned.by_rule().is_empty());
+}
+
+#[test]
+fn what_a_question_is_about_is_lit_alone_until_it_is_answered() {
+    let Some(mut window) = window(Source::Lesson("figure-4".to_owned())) else { return };
+    first_question(&mut window);
+    let at = step(&window);
+    let study = window.state().state.study().unwrap();
+    let about = Outlined::Element(quadfront::core::mesh::ElementId(8));
+    assert_eq!((study.about(at), study.lit(at)), (Some(about), vec![about]));
+    let right = study.posed().unwrap().asked.answer();
+    give(&mut window, right);
+    let study = window.state().state.study().unwrap();
+    assert!(study.about(at).is_none() && study.lit(at).len() > 1, "the light of the part is back");
+    // Its text does not speak of classes and H-values.
+    assert!(!study.labels_segments());
 }
 
 #[test]

@@ -17,11 +17,12 @@ pub use measures::shading;
 use super::presentation::Audience;
 use super::session::Moment;
 use super::state::State;
+use super::study::Study;
 use super::theme::{self, ink};
 use super::viewport::{ViewFrame, class_colour};
 use super::words;
 use crate::core::front::Segment;
-use crate::core::mesh::NodeId;
+use crate::core::mesh::{ElementId, NodeId};
 use crate::core::run::explain;
 use crate::render::palette::Palette;
 use crate::render::pick::Cover;
@@ -133,11 +134,12 @@ pub fn show(
         // An audience has the letters of what has just been done, too.
         over.letters(&audience.map_or(decision, |_| moment.decision()));
     }
-    if state.document().layers.labels && which != ViewRole::Whole {
+    let labels_segments = state.shown_study().is_none_or(Study::labels_segments);
+    if state.document().layers.labels && which != ViewRole::Whole && labels_segments {
         over.base(&decision, which);
     }
     let names_things = state.document().layers.labels && which == ViewRole::Main;
-    let tells_classes = !state.hides_classes();
+    let tells_classes = labels_segments && !state.hides_classes();
     if which == ViewRole::Main {
         over.study(state);
     }
@@ -324,8 +326,7 @@ impl Labels<'_> {
                     Some(s) => words::segment([s.a, s.b]),
                     None => words::edge(ends),
                 },
-                Outlined::Element(e) if self.moment.mesh.is_quad(e) => format!("quadrilateral {}", e.0),
-                Outlined::Element(e) => format!("triangle {}", e.0),
+                Outlined::Element(e) => self.about_element(e),
             };
             let why = self.moment.refused().into_iter().find(|candidate| candidate.is(what));
             let text = why.map_or(text.clone(), |candidate| format!("{text}  ·  {}", candidate.reason));
@@ -333,6 +334,11 @@ impl Labels<'_> {
             let Some(at) = self.on_screen(self.lifted(p)).filter(|at| self.frame.rect.contains(*at)) else { continue };
             self.name(at, &text, font, ink(self.palette.label));
         }
+    }
+
+    fn about_element(&self, e: ElementId) -> String {
+        let kind = if self.moment.mesh.is_quad(e) { "quadrilateral" } else { "triangle" };
+        format!("{kind} {}", e.0)
     }
 
     /// A front segment with its class, H, and the key by which it is ordered.

@@ -12,7 +12,7 @@ use super::session::{Posed, Taught};
 use crate::core::case::built_in::FIGURES;
 use crate::core::lesson::{Decision, Lesson, Things, built_in};
 use crate::core::mesh::{Mesh, NodeId};
-use crate::core::question::{Answer, Drawn, Judged, Kind, Score, Series, Verdict};
+use crate::core::question::{Answer, Drawn, Judged, Kind, Rule, Score, Series, Verdict};
 use crate::render::scene::Outlined;
 
 /// Something that is done while one learns.
@@ -204,13 +204,26 @@ impl Study {
         self.hints == 0 && self.tries.is_empty() && self.open_question(step).is_some_and(is_about_them)
     }
 
+    /// What the question is about that waits for an answer at the state of a step.
+    pub fn about(&self, step: u64) -> Option<Outlined> {
+        self.open_question(step)?.asked.of.map(super::state::outlined)
+    }
+
+    /// Whether the segments of the front have labels with class and H-value: in a lesson, where one of its rules speaks
+    /// of them.
+    pub fn labels_segments(&self) -> bool {
+        let speaks = |lesson: &Lesson| lesson.rules.iter().any(|rule| matches!(rule, Rule::HValue | Rule::Table1));
+        self.lesson().is_none_or(|(lesson, _)| speaks(lesson))
+    }
+
     /// What is lit at the state of a step.
     pub fn lit(&self, step: u64) -> Vec<Outlined> {
         let Some(taught) = self.taught.as_ref().filter(|taught| taught.step == step) else { return Vec::new() };
         let light = taught.scene.iter().flat_map(|scene| outlined(&scene.light));
         let shown = self.tries.last().and_then(|last| pointed(&last.answer));
-        let about = self.open_question(step).and_then(|posed| posed.asked.of).map(super::state::outlined);
-        light.chain(shown).chain(about).collect()
+        // What a question is about is not to be taken for what the part lights.
+        let about = self.about(step);
+        light.filter(|_| about.is_none()).chain(shown).chain(about).collect()
     }
 
     /// Labels at edges and nodes: hints, and answers with the sign of their verdict.

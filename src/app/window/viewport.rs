@@ -264,7 +264,10 @@ impl Views {
         if let Some(Outlined::Element(e)) = hovered {
             self.hint = Some(e);
         }
-        commands.extend(hovered.map(Command::Hover));
+        // An element under the pointer is not to be taken for a part of the lesson. No question asks for one.
+        let is_element = |what: &Outlined| matches!(what, Outlined::Element(_));
+        let shown = hovered.filter(|what| state.shown_study().is_none() || !is_element(what));
+        commands.extend(shown.map(Command::Hover));
         on_click(response, Command::Pick(hovered), commands);
         if response.double_clicked()
             && let Some(what) = hovered
@@ -279,7 +282,7 @@ impl Views {
                 actions::menu(ui, state, what, commands);
             });
         }
-        if hovered.is_some() && response.hovered() {
+        if shown.is_some() && response.hovered() {
             ui.ctx().set_cursor_icon(egui::CursorIcon::PointingHand);
         }
     }

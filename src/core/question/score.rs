@@ -61,17 +61,31 @@ impl Tally {
     }
 }
 
-/// All answers of a learner, in their order. Only the first answer to a question at a step counts.
+/// All answers of a learner, in their order. Only the first answer to a question at a step counts, and none where the
+/// right one was shown before.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Score {
     given: Vec<Given>,
+    /// The questions whose answers were shown.
+    shown: Vec<Question>,
 }
 
+/// What tells questions apart: step, kind, and what they are about.
+type Question = (u64, Kind, Option<Watched>);
+
 impl Score {
-    /// Notes a judged answer; false where the question was answered before, which changes nothing.
+    /// Notes that the right answer was shown: one that is given later does not count.
+    pub fn show(&mut self, asked: &Asked) {
+        self.shown.push((asked.step, asked.kind, asked.of));
+    }
+
+    /// Notes a judged answer; false where the question was answered before, or its answer was shown, which changes
+    /// nothing.
     pub fn note(&mut self, asked: &Asked, answer: Answer, judged: &Judged, hints: u32) -> bool {
         let Asked { step, kind, of, .. } = *asked;
-        if self.given.iter().any(|given| (given.step, given.kind, given.of) == (step, kind, of)) {
+        let mut answered =
+            self.given.iter().map(|given| (given.step, given.kind, given.of)).chain(self.shown.iter().copied());
+        if answered.any(|question| question == (step, kind, of)) {
             return false;
         }
         let Judged { verdict, rule, .. } = *judged;

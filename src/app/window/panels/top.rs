@@ -31,34 +31,48 @@ const TITLES: f32 = 560.0;
 pub fn show(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &Palette) {
     let bar = ui.max_rect();
     ui.painter().hline(bar.x_range(), bar.bottom() - 0.5, (1.0, ink(palette.line)));
-    ui.horizontal_centered(|ui| {
+    let menus_end = ui.horizontal_centered(|ui| {
         ui.add_space(8.0);
         ui.label(RichText::new("quadfront").font(theme::semibold(theme::BODY)).color(ink(palette.strong)));
         ui.add_space(6.0);
-        MenuBar::new().ui(ui, |ui| menus(ui, state, commands));
+        MenuBar::new().ui(ui, |ui| menus(ui, state, commands)).inner
     });
     let right = egui::UiBuilder::new().max_rect(bar).layout(Layout::right_to_left(Align::Center));
-    ui.scope_builder(right, |ui| {
+    let field_start = ui.scope_builder(right, |ui| {
         ui.add_space(8.0);
-        field(ui, bar.width(), commands, palette);
+        field(ui, bar.width(), commands, palette)
     });
     if let Some(study) = state.study().filter(|study| study.explores) {
         back(ui, study, bar, commands, palette);
     } else if let Some([name, title]) = named(state) {
-        let painter = ui.painter_at(bar);
-        let name = painter.layout_no_wrap(name, theme::semibold(theme::BODY), ink(palette.strong));
-        let room = (bar.width() - 780.0).max(0.0);
-        let mut job = egui::text::LayoutJob::simple_singleline(title, theme::regular(theme::BODY), ink(palette.weak));
-        job.wrap = egui::text::TextWrapping::truncate_at_width((room - name.size().x - 8.0).max(0.0));
-        let title = painter.layout_job(job);
-        let width = name.size().x + 8.0 + title.size().x;
-        let start = bar.center() - Vec2::new(0.5 * width, 0.0);
-        let below = |size: Vec2, x: f32| Align2::LEFT_CENTER.anchor_size(start + Vec2::new(x, 0.0), size).min;
-        let (name_size, title_size) = (name.size(), title.size());
-        if room > name_size.x {
-            painter.galley(below(name_size, 0.0), name, ink(palette.strong));
-            painter.galley(below(title_size, name_size.x + 8.0), title, ink(palette.weak));
-        }
+        let room = bar.with_min_x(menus_end.inner + 16.0).with_max_x(field_start.inner - 16.0);
+        heading(ui, room, bar.center().x, name, title, palette);
+    }
+}
+
+/// Name and title in a room, around `centre` where they fit there. A title that is cut is told in whole where one points
+/// at it.
+fn heading(ui: &Ui, room: egui::Rect, centre: f32, name: String, title: String, palette: &Palette) {
+    let name = ui.painter().layout_no_wrap(name, theme::semibold(theme::BODY), ink(palette.strong));
+    if room.width() < name.size().x {
+        return;
+    }
+    let after = name.size().x + 8.0;
+    let mut job =
+        egui::text::LayoutJob::simple_singleline(title.clone(), theme::regular(theme::BODY), ink(palette.weak));
+    job.wrap = egui::text::TextWrapping::truncate_at_width((room.width() - after).max(0.0));
+    let shown = ui.painter().layout_job(job);
+    let width = after + shown.size().x;
+    let left = (centre - 0.5 * width).min(room.right() - width).max(room.left());
+    let place = |x: f32, size: Vec2| Align2::LEFT_CENTER.anchor_size(egui::pos2(x, room.center().y), size);
+    let (name_place, title_place) = (place(left, name.size()), place(left + after, shown.size()));
+    let (is_cut, said) = (shown.elided, format!("{} {title}", name.text()));
+    ui.painter().galley(name_place.min, name, ink(palette.strong));
+    ui.painter().galley(title_place.min, shown, ink(palette.weak));
+    let response = ui.interact(name_place.union(title_place), ui.scope_id().with("title"), Sense::hover());
+    response.widget_info(|| WidgetInfo::labeled(Role::Label, true, said.clone()));
+    if is_cut {
+        response.on_hover_text(title);
     }
 }
 
@@ -92,7 +106,8 @@ fn items<const N: usize>(ui: &mut Ui, all: [Command; N], commands: &mut Vec<Comm
     all.into_iter().for_each(|command| item(ui, command, commands));
 }
 
-fn menus(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
+/// The menus. Returns where they end.
+fn menus(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) -> f32 {
     ui.menu_button("Case", |ui| {
         items(ui, [Command::OpenDialog, Command::OpenPath, Command::Reopen, Command::Import], commands);
         items(ui, [Command::SaveRun, Command::SaveMesh, Command::Notes], commands);
@@ -147,9 +162,10 @@ fn menus(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
         });
     });
     ui.menu_button("Learn", |ui| learn(ui, state, commands));
-    ui.menu_button("Help", |ui| {
+    let last = ui.menu_button("Help", |ui| {
         items(ui, [Command::Help, Command::Palette, Command::Messages, Command::Go(Goal::Step(0))], commands);
     });
+    last.response.rect.right()
 }
 
 /// Lessons and predictions.
@@ -196,8 +212,8 @@ fn named(state: &State) -> Option<[String; 2]> {
     })
 }
 
-/// A button that looks like a field and opens the palette.
-fn field(ui: &mut Ui, room: f32, commands: &mut Vec<Command>, palette: &Palette) {
+/// A button that looks like a field and opens the palette. Returns its left end.
+fn field(ui: &mut Ui, room: f32, commands: &mut Vec<Command>, palette: &Palette) -> f32 {
     let width = if room > 800.0 { 250.0 } else { 60.0 };
     let (rect, response) = ui.allocate_exact_size(Vec2::new(width, 22.0), Sense::click());
     response.widget_info(|| WidgetInfo::labeled(Role::Button, true, Command::Palette.name()));
@@ -214,4 +230,5 @@ fn field(ui: &mut Ui, room: f32, commands: &mut Vec<Command>, palette: &Palette)
         painter.text(right, Align2::RIGHT_CENTER, "Ctrl+P", theme::regular(theme::HEAD), ink(palette.hint));
     }
     on_click(&response.on_hover_text(Command::Palette.tip()), Command::Palette, commands);
+    rect.left()
 }

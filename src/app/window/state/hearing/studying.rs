@@ -77,6 +77,9 @@ impl State {
             }
         };
         let is_first = study.tries.is_empty() && !is_shown;
+        if is_shown {
+            study.score.show(asked);
+        }
         if is_first && study.score.note(asked, answer, &judged, study.hints as u32) {
             let learned = &mut self.workspace.learned;
             match &study.subject {
