@@ -107,6 +107,35 @@ fn every_kind_of_event_has_a_sentence_and_its_numbers_are_those_of_the_event() {
     insta::assert_snapshot!(text);
 }
 
+/// The order of the front is recomputed by the library's tests of selection; here the sentence must name the rule, and
+/// table 1's words only where table 1 selects.
+#[test]
+fn a_selection_is_told_by_the_rule_that_made_it() {
+    let rules = [
+        ("table1", "class "),
+        ("shortest", "length in space"),
+        ("smallest_angle", "the sum of both frontal angles"),
+        ("level", "state, row and metric length"),
+    ];
+    for (rule, _) in rules {
+        let mut seen = 0;
+        events("figure-13", &[("selection", rule)], |event, base| {
+            let Event::BaseSelected { length_physical, .. } = *event else { return };
+            let text = plain(&narration(event, base));
+            for (other, its) in rules {
+                assert_eq!(text.contains(its), other == rule, "{rule}: {text}");
+            }
+            if rule == "shortest" {
+                let (last, half) = *told(&text).last().unwrap();
+                assert!((last - length_physical).abs() <= half * (1.0 + 1e-9), "{text}");
+            }
+            assert_eq!(serde_json::to_value(event).unwrap()["selection"], rule);
+            seen += 1;
+        });
+        assert!(seen > 0, "{rule}");
+    }
+}
+
 #[test]
 fn a_side_is_told_without_its_base_too() {
     let mut seen = 0;

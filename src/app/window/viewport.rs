@@ -54,6 +54,9 @@ const LENS: usize = 1;
 const WHOLE: usize = 2;
 const BESIDE: usize = 3;
 
+/// After so many seconds without a movement the pointer of a presentation is hidden, and points at nothing.
+const REST: f32 = 2.0;
+
 /// A place or a direction of a node.
 type OfNode = fn(&Mesh, NodeId) -> DVec3;
 
@@ -267,6 +270,9 @@ impl Views {
         // An element under the pointer is not to be taken for a part of the lesson. No question asks for one.
         let is_element = |what: &Outlined| matches!(what, Outlined::Element(_));
         let shown = hovered.filter(|what| state.shown_study().is_none() || !is_element(what));
+        // A pointer that rests points at nothing that an audience should see.
+        let rests = self.audience.is_some() && rests(ui);
+        let shown = shown.filter(|_| !rests);
         commands.extend(shown.map(Command::Hover));
         on_click(response, Command::Pick(hovered), commands);
         if response.double_clicked()
@@ -282,7 +288,9 @@ impl Views {
                 actions::menu(ui, state, what, commands);
             });
         }
-        if shown.is_some() && response.hovered() {
+        if rests && response.hovered() {
+            ui.ctx().set_cursor_icon(egui::CursorIcon::None);
+        } else if shown.is_some() && response.hovered() {
             ui.ctx().set_cursor_icon(egui::CursorIcon::PointingHand);
         }
     }
@@ -292,6 +300,15 @@ impl Views {
         self.plane.note(changes, slots);
         self.space.note(changes, slots);
     }
+}
+
+/// Whether the pointer has not moved for a while; the frame in which it comes to rest is drawn.
+fn rests(ui: &Ui) -> bool {
+    let still = ui.input(|input| input.pointer.time_since_last_movement());
+    if still < REST {
+        ui.ctx().request_repaint_after(std::time::Duration::from_secs_f32(REST - still));
+    }
+    still >= REST
 }
 
 /// Labels over a main view, and the light of a presentation.

@@ -13,6 +13,7 @@ pub use self::few::FewNodes;
 pub use self::kind::{EventKind, WhyKind};
 pub use self::reason::{Purpose, SeamCorner, Unmerged, Why};
 use super::last_resort::{Means, Outcome};
+use crate::core::case::Selection;
 use crate::core::front::Side;
 use crate::core::mesh::{ElementId, NodeId};
 
@@ -122,6 +123,9 @@ pub enum Event {
         level: u16,
         /// Whether it is within c Hmin.
         within_reach: bool,
+        /// The rule that selects; the reach and the classes count for table 1 alone.
+        #[serde(serialize_with = "word")]
+        selection: Selection,
         /// Whether the user picked it, regardless of its rank.
         picked: bool,
     },
@@ -406,6 +410,10 @@ fn present<S: Serializer>(sides: &[u32; 6], serializer: S) -> Result<S::Ok, S::E
 
 fn degrees_if_any<S: Serializer>(radians: &Option<f64>, serializer: S) -> Result<S::Ok, S::Error> {
     radians.map(f64::to_degrees).serialize(serializer)
+}
+
+fn word<S: Serializer>(selection: &Selection, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.serialize_str(selection.word())
 }
 
 fn both_degrees<S: Serializer>(radians: &[f64; 2], serializer: S) -> Result<S::Ok, S::Error> {

@@ -42,6 +42,7 @@ pub(super) fn select(front: &mut Front<'_>, picked: Option<[NodeId; 2]>) -> Done
         length_physical,
         level,
         within_reach,
+        selection: parameters.selection,
         picked: picked.is_some(),
     };
     (Phase::PrepareSide { base, attempt, side: Side::Left, left: None }, Some(event))

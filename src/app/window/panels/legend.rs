@@ -130,8 +130,15 @@ pub fn table(ui: &mut Ui, state: &State, palette: &Palette) {
             });
         });
     }
+    let selecting = state.run().moment.as_ref().map(|moment| &moment.selecting);
+    let rule = selecting.map_or(Selection::Table1, |selecting| selecting.table.parameters().selection);
+    let is_picked = selecting.and_then(|selecting| selecting.base).is_some_and(|base| base.picked);
     let said = match lit {
         Some(class) => format!("Row {class} selected the base."),
+        None if is_picked => "You chose the base, whatever its row.".to_owned(),
+        None if rule != Selection::Table1 => {
+            format!("This run does not select by table 1, but by selection = {}.", rule.word())
+        }
         None => "The row that selects a base is lit while its quadrilateral is made.".to_owned(),
     };
     ui.add(eframe::egui::Label::new(note(said, palette)).wrap());

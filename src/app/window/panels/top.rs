@@ -50,8 +50,8 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &P
     }
 }
 
-/// Name and title in a room, around `centre` where they fit there. A title that is cut is told in whole where one points
-/// at it.
+/// Name and title in a room, around `centre` where they fit there. A title that is cut is told in whole where one
+/// points at it.
 fn heading(ui: &Ui, room: egui::Rect, centre: f32, name: String, title: String, palette: &Palette) {
     let name = ui.painter().layout_no_wrap(name, theme::semibold(theme::BODY), ink(palette.strong));
     if room.width() < name.size().x {

@@ -4,9 +4,10 @@
 use super::event::{why_rolled_back, why_unmerged};
 use super::numbers::{apart, capital, count, edge, segment};
 use super::side::name;
+use crate::core::case::Selection;
 use crate::core::convert::{Cleaning, Event, Means, Mending, Purpose, SideEdge};
 use crate::core::front::Side;
-use crate::core::kernel::number::{degrees, fixed, grouped};
+use crate::core::kernel::number::{degrees, fixed, grouped, size};
 use crate::core::mesh::{Mesh, NodeId};
 
 /// Tells the steps of a run one after another: it knows the base under way.
@@ -118,6 +119,15 @@ pub fn narration(event: &Event, base: Option<[NodeId; 2]>) -> String {
 /// The selection of a base (4.3.3, table 1), and what became of one that was chosen or could not be converted.
 fn selection(event: &Event) -> String {
     match *event {
+        Event::BaseSelected { a, b, selection, picked, .. } if selection != Selection::Table1 => {
+            let order = order(event, selection);
+            match picked {
+                true => {
+                    format!("segment {}, which you chose, is the base; the rules order by {order}", segment([a, b]))
+                }
+                false => format!("segment {} is the next base, first in the order by {order}", segment([a, b])),
+            }
+        }
         Event::BaseSelected { a, b, class, theta: [at_a, at_b], key, reach, picked, .. } => {
             let [at_a, at_b] = [at_a, at_b].map(degrees);
             let rect = "\u{3b8}_{rect}";
@@ -144,6 +154,23 @@ fn selection(event: &Event) -> String {
             segment([a, b])
         ),
         _ => String::new(),
+    }
+}
+
+/// By what a rule other than table 1 orders the segments (4.3.3), and what the base has of it.
+fn order(event: &Event, selection: Selection) -> String {
+    let Event::BaseSelected { theta, level, length_metric, length_physical, .. } = *event else {
+        return String::new();
+    };
+    let [at_a, at_b] = theta.map(degrees);
+    match selection {
+        Selection::Shortest | Selection::Table1 => format!("length in space, here {}", size(length_physical)),
+        Selection::SmallestAngle => format!("the sum of both frontal angles, here {at_a}\u{b0} and {at_b}\u{b0}"),
+        Selection::Level => format!(
+            "state, row and metric length: here frontal angles of {at_a}\u{b0} and {at_b}\u{b0}, row {level} from the \
+             boundary, and length {}",
+            size(length_metric)
+        ),
     }
 }
 

@@ -16,8 +16,8 @@ impl State {
             PresentationCommand::Spotlight => {
                 let form = &mut self.workspace.presentation;
                 form.spotlight = !form.spotlight;
-                let told = if form.spotlight { "have a spotlight" } else { "have no spotlight" };
-                self.notice(format!("Presentations {told}."));
+                let told = if form.spotlight { "is on" } else { "is off; S turns it on again" };
+                self.notice(format!("The spotlight of presentations {told}."));
             }
             PresentationCommand::Black if self.view.chrome == Chrome::Presentation => {
                 self.view.is_black = !self.view.is_black;
