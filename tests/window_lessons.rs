@@ -316,6 +316,36 @@ fn what_a_question_is_about_is_lit_alone_until_it_is_answered() {
 }
 
 #[test]
+fn digits_are_an_answer_while_one_is_asked_for_and_layers_else() {
+    let Some(mut window) = window(Source::Lesson("figure-13".to_owned())) else { return };
+    let layers = |window: &Window| window.state().state.document().layers.clone();
+    let before = layers(&window);
+    taught(&mut window);
+    while window.state().state.study().unwrap().posed().is_none_or(|posed| posed.asked.kind != Kind::Segment) {
+        let asks = window.state().state.study().unwrap().is_asking();
+        click(&mut window, if asks { "Show the answer" } else { "Continue" });
+        taught(&mut window);
+    }
+    let Answer::Edge([a, b]) = window.state().state.study().unwrap().posed().unwrap().asked.answer() else { panic!() };
+    // Nothing has the focus: the digits go into the field nevertheless.
+    for c in format!("{}-{}", a.0, b.0).chars() {
+        let key = Key::from_name(&c.to_string()).unwrap_or(Key::Minus);
+        window.key_press(key);
+        window.event(eframe::egui::Event::Text(c.to_string()));
+        window.run_steps(2);
+    }
+    window.key_press(Key::Enter);
+    window.run_steps(2);
+    until(&mut window, "the answer is judged", |window| !window.state().state.study().unwrap().tries.is_empty());
+    assert!(has(&window, "Yes."));
+    assert_eq!(layers(&window), before);
+    // With the answer there, digits are keys again.
+    window.key_press(Key::Num1);
+    window.run_steps(2);
+    assert_ne!(layers(&window), before);
+}
+
+#[test]
 fn any_state_of_any_run_asks_what_comes_next() {
     let Some(mut window) = window(Source::BuiltIn("example1".to_owned())) else { return };
     apply(&mut window, Command::Go(Goal::ToQuads(30)));

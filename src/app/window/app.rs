@@ -145,7 +145,10 @@ impl App {
         let typing = context.egui_wants_keyboard_input();
         let (busy, chrome) = (self.state.run().is_busy(), self.state.chrome());
         let known = match self.state.study().filter(|_| chrome == Chrome::Panels) {
-            Some(study) => keys_of_study(study.explores, self.state.steps_by_operation()),
+            Some(study) => {
+                let writes = self.state.open_question().is_some_and(|posed| posed.asked.kind.choices().is_empty());
+                keys_of_study(study.explores, self.state.steps_by_operation(), writes && !study.explores)
+            }
             None => keys_in(chrome),
         };
         let mut commands = context.input_mut(|input| presses::commands(&mut input.events, &known, typing, busy));

@@ -131,8 +131,9 @@ pub fn show(
         over.ellipses();
     }
     if !small {
-        // An audience has the letters of what has just been done, too.
-        over.letters(&audience.map_or(decision, |_| moment.decision()));
+        // An audience and a learner have the letters of what has just been done, too.
+        let is_told = audience.is_some() || state.shown_study().is_some();
+        over.letters(&if is_told { moment.decision() } else { decision });
     }
     let labels_segments = state.shown_study().is_none_or(Study::labels_segments);
     if state.document().layers.labels && which != ViewRole::Whole && labels_segments {

@@ -248,13 +248,13 @@ impl Study {
     }
 
     /// Where the camera goes at the state of a step, with a number that changes when it is to go there: the nodes that
-    /// it shows, none for the whole mesh.
+    /// it shows, those of its questions too, none for the whole mesh.
     pub fn framed(&self, step: u64, mesh: &Mesh) -> Option<(u64, Vec<NodeId>)> {
         let taught = self.taught.as_ref().filter(|taught| taught.step == step)?;
-        let nodes = match (&taught.scene, taught.posed.first()) {
-            (Some(scene), _) => scene.frame.all_nodes(mesh),
-            (None, posed) => posed.map_or_else(Vec::new, |posed| posed.asked.place.clone()),
-        };
+        let framed = taught.scene.as_ref().map(|scene| scene.frame.all_nodes(mesh));
+        let shows_all = framed.as_ref().is_some_and(Vec::is_empty);
+        let asked = taught.posed.iter().filter(|_| !shows_all).flat_map(|posed| posed.asked.place.iter().copied());
+        let nodes = framed.into_iter().flatten().chain(asked).collect();
         Some((self.frames, nodes))
     }
 

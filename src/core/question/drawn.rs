@@ -1,10 +1,11 @@
 //! Questions drawn from a run: the same seed gives the same ones, on every machine.
 
 use super::kind::Kind;
+use super::selection::can_be_seen;
 use super::series::Series;
 use crate::core::convert::EventKind;
 use crate::core::fault::Fault;
-use crate::core::run::{History, Log};
+use crate::core::run::{FrontTable, History, Log};
 
 /// What is asked of a run step by step, for each step the first that it answers. Nothing is asked about steps that only
 /// change what is around a quadrilateral, and not whether one succeeds where it does: most do.
@@ -110,7 +111,8 @@ fn may_answer(kind: Kind, event: EventKind) -> bool {
     }
 }
 
-/// Whether the question can be asked there: events do not say in which phase they were.
+/// Whether the question can be asked there, and answered by looking: events do not say in which phase they were, nor
+/// how near a second one came.
 fn is_asked(history: &mut History, kind: Kind, step: u64) -> Result<bool, Fault> {
     if !matches!(kind, Kind::Top | Kind::Form | Kind::Segment | Kind::Class) {
         return Ok(true);
@@ -118,7 +120,8 @@ fn is_asked(history: &mut History, kind: Kind, step: u64) -> Result<bool, Fault>
     let at = history.step();
     history.seek(step)?;
     let event = history.event(step + 1)?;
-    let is = event.is_some_and(|event| kind.is_answered_by(history.state().phase(), &event));
+    let is_answered = event.is_some_and(|event| kind.is_answered_by(history.state().phase(), &event));
+    let is = is_answered && (kind != Kind::Segment || can_be_seen(&FrontTable::of(history.state())));
     history.seek(at)?;
     Ok(is)
 }

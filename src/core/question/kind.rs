@@ -29,7 +29,7 @@ worded! {
         Count = "count",
         /// Whether an edge or element is live.
         Live = "live",
-        /// Of which class the frontal angle of a node is.
+        /// Which kind of frontal angle a node has (figure 12).
         Angle = "angle",
     }
 }
@@ -124,7 +124,7 @@ impl Kind {
             Kind::Split => "Will the front be split here?",
             Kind::Count => "How many triangles become the quadrilateral?",
             Kind::Live => "Is it live?",
-            Kind::Angle => "Of which class is this frontal angle?",
+            Kind::Angle => "Which kind of frontal angle is this?",
         }
     }
 

@@ -14,6 +14,8 @@ use crate::core::run::{EdgeFacts, EdgeKind, FrontTable, Selecting, Verdict};
 
 /// Keys and angles that differ by less than this, relative to them, are the same but for rounding.
 const ROUNDING: f64 = 1e-9;
+/// Nobody sees which of two keys is smaller that differ by less than this, relative to them.
+const SEEN: f64 = 0.05;
 
 /// Judges a front segment as the next base, against the one that the rules select.
 pub(super) fn segment_is_next(
@@ -69,20 +71,43 @@ fn rule_of(table: &FrontTable, row: &Row) -> Rule {
 /// Whether no rule tells two segments apart: equal classes and keys, where the sum of the frontal angles decides, or
 /// would but for rounding, does so by rounding only.
 fn is_the_same_but_for_rounding(table: &FrontTable, one: &Row, other: &Row) -> bool {
+    let Some([one_key, other_key]) = comparable_keys(table, one, other) else { return false };
+    let sums = [one, other].map(|row| row.theta[0] + row.theta[1]);
+    let keys_are_near = are_near(&one_key, &other_key, ROUNDING);
+    table.competes(one) && keys_are_near && (one_key != other_key || are_near(&sums[..1], &sums[1..], ROUNDING))
+}
+
+/// The keys of two segments where they decide which one comes first: not where the class or the reach does.
+fn comparable_keys(table: &FrontTable, one: &Row, other: &Row) -> Option<[[f64; 3]; 2]> {
     let parameters = table.parameters();
-    let near = |x: f64, y: f64| (x - y).abs() <= ROUNDING * x.abs().max(y.abs());
     let by_table = parameters.selection == Selection::Table1;
     if by_table && (one.class != other.class || table.is_within_reach(one) != table.is_within_reach(other)) {
-        return false;
+        return None;
     }
-    let [Key(one_key), Key(other_key)] = if by_table && !table.is_within_reach(one) {
-        [one, other].map(|row| Key([row.h_value, 0.0, 0.0]))
+    Some(if by_table && !table.is_within_reach(one) {
+        [one, other].map(|row| [row.h_value, 0.0, 0.0])
     } else {
-        [one, other].map(|row| row.primary_key(parameters))
-    };
-    let sums = [one, other].map(|row| row.theta[0] + row.theta[1]);
-    let keys_are_near = one_key.iter().zip(other_key).all(|(x, y)| near(*x, y));
-    table.competes(one) && keys_are_near && (one_key != other_key || near(sums[0], sums[1]))
+        [one, other].map(|row| {
+            let Key(key) = row.primary_key(parameters);
+            key
+        })
+    })
+}
+
+/// Whether all values differ by at most a share of them.
+fn are_near(one: &[f64], other: &[f64], share: f64) -> bool {
+    one.iter().zip(other).all(|(x, y)| (x - y).abs() <= share * x.abs().max(y.abs()))
+}
+
+/// Whether one can see which segment comes next: no other one is nearly as good. What is as good but for rounding may
+/// stand beside it, since both are right then.
+pub(super) fn can_be_seen(table: &FrontTable) -> bool {
+    let Some(chosen) = table.choice() else { return false };
+    let is_rival = |row: &&Row| table.competes(row) && [row.a, row.b] != [chosen.a, chosen.b];
+    !table.rows.iter().filter(is_rival).any(|row| {
+        let keys = comparable_keys(table, row, chosen);
+        keys.is_some_and(|[its, best]| are_near(&its, &best, SEEN)) && !is_the_same_but_for_rounding(table, row, chosen)
+    })
 }
 
 /// Why an edge is no front segment.

@@ -129,6 +129,11 @@ impl FrontTable {
         self.rows.iter().filter(counts).min_by(|a, b| a.h_value.total_cmp(&b.h_value).then(a.h.cmp(&b.h)))
     }
 
+    /// The face that is being converted, from 0; `None` where all are at once.
+    pub fn face(&self) -> Option<u32> {
+        self.face
+    }
+
     /// Whether a segment is on the face that is being converted.
     pub fn is_of_face(&self, row: &Row) -> bool {
         self.face.is_none_or(|face| row.face == face)

@@ -159,8 +159,8 @@ const STUDY: [(Modifiers, Key, Command); 3] = [
 ];
 
 /// All keys while a lesson or a prediction is under way: `explores`, whether the whole window is shown; `by_operation`,
-/// whether the arrows step by operation.
-pub fn keys_of_study(explores: bool, by_operation: bool) -> Vec<(Modifiers, Key, Command)> {
+/// whether the arrows step by operation; `writes`, whether digits are an answer.
+pub fn keys_of_study(explores: bool, by_operation: bool, writes: bool) -> Vec<(Modifiers, Key, Command)> {
     let mut own = STUDY.to_vec();
     if explores {
         own.retain(|key| key.2 == Command::Study(StudyCommand::Explore));
@@ -170,6 +170,7 @@ pub fn keys_of_study(explores: bool, by_operation: bool) -> Vec<(Modifiers, Key,
     }
     let mut keys = keys();
     keys.retain(|key| !own.iter().any(|other| (other.0, other.1) == (key.0, key.1)));
+    keys.retain(|key| !(writes && matches!(key.2, Command::Layer(_))));
     keys.extend(own);
     keys
 }

@@ -55,8 +55,9 @@ pub fn show(
             inset().show(ui, |ui| card::show(ui, state, local, commands, palette));
         });
         CentralPanel::default().frame(Frame::NONE).show(ui, |ui| {
+            let room = ui.available_height();
             ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-                inset().show(ui, |ui| told::show(ui, state, local, commands, palette));
+                inset().show(ui, |ui| told::show(ui, room, state, local, commands, palette));
             });
         });
     });

@@ -1,6 +1,6 @@
 //! The card of a question: what is asked, the answers so far with their reasons, hints, and the way on.
 
-use eframe::egui::{Button, Frame, Label, RichText, ScrollArea, TextEdit, Ui, WidgetInfo};
+use eframe::egui::{Button, Event, Frame, Label, RichText, ScrollArea, TextEdit, Ui, WidgetInfo};
 
 use super::{StudyPanel, TEXT};
 use crate::app::window::command::Command;
@@ -98,10 +98,16 @@ fn answers(ui: &mut Ui, posed: &Posed, local: &mut StudyPanel, commands: &mut Ve
     if local.typed.0 != step {
         local.typed = (step, String::new());
     }
+    // Who writes without a click into the field means it.
+    let written = if ui.memory(|memory| memory.focused().is_none()) { digits(ui) } else { String::new() };
+    local.typed.1 += &written;
     ui.horizontal(|ui| {
         let field = TextEdit::singleline(&mut local.typed.1).hint_text(hint).desired_width(120.0);
         let response = ui.add(field);
         response.widget_info(|| WidgetInfo::labeled(eframe::egui::Role::TextInput, true, "Your answer"));
+        if !written.is_empty() {
+            response.request_focus();
+        }
         let entered = response.lost_focus() && ui.input(|input| input.key_pressed(eframe::egui::Key::Enter));
         let is_given = ui.button("Answer").clicked() || entered;
         if is_given && !local.typed.1.trim().is_empty() {
@@ -109,6 +115,18 @@ fn answers(ui: &mut Ui, posed: &Posed, local: &mut StudyPanel, commands: &mut Ve
             commands.push(Command::Study(StudyCommand::AnswerText(text)));
         }
     });
+}
+
+/// What is written of the numbers of nodes in this frame.
+fn digits(ui: &Ui) -> String {
+    let is_part = |c: char| c.is_ascii_digit() || c == '-';
+    ui.input(|input| {
+        let texts = input.events.iter().filter_map(|event| match event {
+            Event::Text(text) => Some(text.as_str()),
+            _ => None,
+        });
+        texts.filter(|text| text.chars().all(is_part)).collect()
+    })
 }
 
 /// An answer with its verdict and its reason.

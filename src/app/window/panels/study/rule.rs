@@ -4,7 +4,7 @@ use eframe::egui::{Label, Rect, Role, Sense, Ui, Vec2, WidgetInfo};
 
 use super::heading;
 use crate::app::window::command::Command;
-use crate::app::window::panels::{inspector, legend};
+use crate::app::window::panels::{inspector, legend, note};
 use crate::app::window::session::Moment;
 use crate::app::window::state::State;
 use crate::app::window::theme::{self, ink};
@@ -24,6 +24,11 @@ pub fn show(ui: &mut Ui, state: &State, commands: &mut Vec<Command>, palette: &P
     let rect = words::degrees(moment.parameters.theta_rect);
     heading(ui, "Table 1", &format!("which segment comes next, \u{3b8}rect = {rect}\u{b0}"), palette);
     legend::table(ui, state, palette);
+    let table = &moment.selecting.table;
+    if let Some(face) = table.face().filter(|_| !table.rows.iter().all(|row| table.is_of_face(row))) {
+        let text = format!("Faces are converted one after the other: only the front of face {} counts now.", face + 1);
+        ui.add(Label::new(note(text, palette)).wrap());
+    }
     decision(ui, state, &moment, commands, palette);
     let learned = state.workspace().learned.by_rule();
     if !learned.is_empty() {

@@ -4,7 +4,7 @@
 use std::ops::Range;
 
 use eframe::egui::text::{LayoutJob, TextFormat};
-use eframe::egui::{Align, Label, Layout, Response, RichText, Role, Sense, Ui, Vec2, WidgetInfo};
+use eframe::egui::{Align, Label, Layout, Response, RichText, Role, ScrollArea, Sense, Ui, Vec2, WidgetInfo};
 
 use super::{StudyPanel, TEXT, heading};
 use crate::app::window::command::Command;
@@ -25,8 +25,19 @@ const INDENT: f32 = 16.0;
 /// The size of equations.
 const EQUATION: f32 = 17.0;
 
-/// Shows it.
-pub fn show(ui: &mut Ui, state: &State, local: &mut StudyPanel, commands: &mut Vec<Command>, palette: &Palette) {
+/// The least height of the list of decisions, and what is left free below it.
+const LEAST: f32 = 96.0;
+const BELOW: f32 = 20.0;
+
+/// Shows it; `room` is the height that can be seen at once.
+pub fn show(
+    ui: &mut Ui,
+    room: f32,
+    state: &State,
+    local: &mut StudyPanel,
+    commands: &mut Vec<Command>,
+    palette: &Palette,
+) {
     let Some(study) = state.study() else { return };
     match &study.subject {
         Subject::Lesson { lesson, part: at, .. } => {
@@ -47,7 +58,7 @@ pub fn show(ui: &mut Ui, state: &State, local: &mut StudyPanel, commands: &mut V
     if let Some(scene) = study.taught.as_ref().and_then(|taught| taught.scene.as_ref()) {
         away(ui, state, scene, commands, palette);
     }
-    where_we_are(ui, state, study, local, commands, palette);
+    where_we_are(ui, room, state, study, local, commands, palette);
 }
 
 /// The line above a heading: what it is of, and how far one is.
@@ -235,6 +246,7 @@ fn away(ui: &mut Ui, state: &State, scene: &Scene, commands: &mut Vec<Command>, 
 /// The decisions that led to the state, each with a link to its step.
 fn where_we_are(
     ui: &mut Ui,
+    room: f32,
     state: &State,
     study: &Study,
     local: &mut StudyPanel,
@@ -253,15 +265,20 @@ fn where_we_are(
         return;
     }
     heading(ui, "Where we are", &words::counted(decisions.len() as u64, "decision"), palette);
-    for decision in decisions {
-        let is_now = decision.step == moment.step;
-        let response = row(ui, &decision.text, is_now, palette);
-        let now = (state.run().number, moment.step);
-        if is_now && std::mem::replace(&mut local.seen, now) != now {
-            response.scroll_to_me(None);
+    // The list scrolls alone: what is told stays in sight.
+    let used = ui.cursor().top() - ui.min_rect().top();
+    let list = ScrollArea::vertical().id_salt("decisions").max_height((room - used - BELOW).max(LEAST));
+    list.show(ui, |ui| {
+        for decision in decisions {
+            let is_now = decision.step == moment.step;
+            let response = row(ui, &decision.text, is_now, palette);
+            let now = (state.run().number, moment.step);
+            if is_now && std::mem::replace(&mut local.seen, now) != now {
+                response.scroll_to_me(None);
+            }
+            on_click(&response, Command::Go(Goal::Step(decision.step)), commands);
         }
-        on_click(&response, Command::Go(Goal::Step(decision.step)), commands);
-    }
+    });
 }
 
 fn row(ui: &mut Ui, text: &str, is_now: bool, palette: &Palette) -> Response {
