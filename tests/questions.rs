@@ -203,10 +203,10 @@ fn an_answer_of_another_kind_or_at_another_state_is_refused() {
     history.seek(3).unwrap();
     assert!(asked.judge(history.state(), asked.answer()).is_err());
     let asked = Asked::of(&mut history, Kind::Edge, None).unwrap();
-    // Nodes that do not exist, an edge that is none.
+    // What is not there is a slip of the pen: nodes that do not exist, an edge that is none.
     for ends in [[900, 901], [0, 0], [0, 3]] {
-        let judged = asked.judge(history.state(), Answer::Edge(ends.map(NodeId))).unwrap();
-        assert_eq!(judged.verdict, Verdict::Wrong);
+        let fault = asked.judge(history.state(), Answer::Edge(ends.map(NodeId))).unwrap_err().to_string();
+        assert!(fault.starts_with("There is no "), "{fault}");
     }
     history.seek(u64::MAX).unwrap();
     assert_eq!(*history.state().phase(), Phase::Done);

@@ -300,7 +300,7 @@ fn an_answer_that_was_shown_before_does_not_count() {
 }
 
 #[test]
-fn what_a_question_is_about_is_lit_alone_until_it_is_answered() {
+fn what_a_question_is_about_is_lit_alone() {
     let Some(mut window) = window(Source::Lesson("figure-4".to_owned())) else { return };
     first_question(&mut window);
     let at = step(&window);
@@ -310,7 +310,11 @@ fn what_a_question_is_about_is_lit_alone_until_it_is_answered() {
     let right = study.posed().unwrap().asked.answer();
     give(&mut window, right);
     let study = window.state().state.study().unwrap();
-    assert!(study.about(at).is_none() && study.lit(at).len() > 1, "the light of the part is back");
+    assert_eq!(study.lit(at), [about], "with its answer too");
+    click(&mut window, "Continue");
+    taught(&mut window);
+    let study = window.state().state.study().unwrap();
+    assert!(study.about(at).is_none() && study.lit(at).len() > 1, "the next part has its own light");
     // Its text does not speak of classes and H-values.
     assert!(!study.labels_segments());
 }
@@ -327,6 +331,10 @@ fn digits_are_an_answer_while_one_is_asked_for_and_layers_else() {
         taught(&mut window);
     }
     let Answer::Edge([a, b]) = window.state().state.study().unwrap().posed().unwrap().asked.answer() else { panic!() };
+    // A slip of the pen is no answer.
+    type_over(&mut window, "Your answer", "0-19");
+    until(&mut window, "the slip is told", |window| has(window, "There is no edge 0\u{2013}19 at this step"));
+    assert!(window.state().state.study().unwrap().tries.is_empty());
     // Nothing has the focus: the digits go into the field nevertheless.
     for c in format!("{}-{}", a.0, b.0).chars() {
         let key = Key::from_name(&c.to_string()).unwrap_or(Key::Minus);

@@ -204,9 +204,9 @@ impl Study {
         self.hints == 0 && self.tries.is_empty() && self.open_question(step).is_some_and(is_about_them)
     }
 
-    /// What the question is about that waits for an answer at the state of a step.
+    /// What the question at hand is about, at the state of a step.
     pub fn about(&self, step: u64) -> Option<Outlined> {
-        self.open_question(step)?.asked.of.map(super::state::outlined)
+        self.posed().filter(|_| self.is_about(step))?.asked.of.map(super::state::outlined)
     }
 
     /// Whether the segments of the front have labels with class and H-value: in a lesson, where one of its rules speaks

@@ -12,7 +12,7 @@ use crate::core::convert::{Converter, Event, LookedAt, Purpose};
 use crate::core::fault::{Fault, FaultKind};
 use crate::core::kernel::number::{degrees, fixed};
 use crate::core::mesh::NodeId;
-use crate::core::run::explain::{about, narration};
+use crate::core::run::explain::{about, edge, narration};
 use crate::core::run::{Corner, History, Selecting, Watched};
 
 /// What a question is about, with all that its judgement needs beside the state.
@@ -138,9 +138,16 @@ impl Asked {
             Answer::Node(node) => std::slice::from_ref(node),
             Answer::Choice(_) | Answer::Number(_) => &[],
         };
-        if let Some(absent) = named.iter().find(|node| !mesh.has_node(**node)) {
-            let why = format!("Node {} does not exist at this step.", absent.0);
-            return Ok(Judged::wrong(self.rule, vec![why]));
+        // What is not there is a slip of the pen and no answer.
+        let absent = named.iter().find(|node| !mesh.has_node(**node)).map(|node| format!("node {}", node.0));
+        let absent = absent.or_else(|| {
+            let must_be = matches!(self.matter, Matter::Segment { .. } | Matter::Across { .. } | Matter::Beside { .. });
+            let Answer::Edge([a, b]) = answer else { return None };
+            let is_there = mesh.half_edge_between(a, b).or_else(|| mesh.half_edge_between(b, a)).is_some();
+            (must_be && !is_there).then(|| format!("edge {}", edge([a, b])))
+        });
+        if let Some(absent) = absent {
+            return Err(Fault::new(format!("There is no {absent} at this step")).of_kind(FaultKind::Parameter));
         }
         let judged = match (&self.matter, answer) {
             (Matter::Segment { selecting, right }, Answer::Edge(ends)) => {

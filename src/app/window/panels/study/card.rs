@@ -1,6 +1,7 @@
 //! The card of a question: what is asked, the answers so far with their reasons, hints, and the way on.
 
-use eframe::egui::{Button, Event, Frame, Label, RichText, ScrollArea, TextEdit, Ui, WidgetInfo};
+use eframe::egui::text::{CCursor, CCursorRange};
+use eframe::egui::{Button, Event, Frame, Id, Label, RichText, ScrollArea, TextEdit, Ui, WidgetInfo};
 
 use super::{StudyPanel, TEXT};
 use crate::app::window::command::Command;
@@ -90,8 +91,8 @@ fn answers(ui: &mut Ui, posed: &Posed, local: &mut StudyPanel, commands: &mut Ve
     }
     let (what, hint) = match kind {
         Kind::Segment => ("Click the segment in the view, or write its nodes.", "12-40"),
-        Kind::Node => ("Click the node in the view, or write its number.", "7"),
-        Kind::Count => ("Write the number.", "4"),
+        Kind::Node => ("Click the node in the view, or write its number.", "number"),
+        Kind::Count => ("Write the number.", "number"),
         _ => ("Click the edge in the view, or write its nodes.", "12-40"),
     };
     ui.add(Label::new(note(what, palette)).wrap());
@@ -107,6 +108,7 @@ fn answers(ui: &mut Ui, posed: &Posed, local: &mut StudyPanel, commands: &mut Ve
         response.widget_info(|| WidgetInfo::labeled(eframe::egui::Role::TextInput, true, "Your answer"));
         if !written.is_empty() {
             response.request_focus();
+            write_on(ui, response.id, local.typed.1.chars().count());
         }
         let entered = response.lost_focus() && ui.input(|input| input.key_pressed(eframe::egui::Key::Enter));
         let is_given = ui.button("Answer").clicked() || entered;
@@ -115,6 +117,13 @@ fn answers(ui: &mut Ui, posed: &Posed, local: &mut StudyPanel, commands: &mut Ve
             commands.push(Command::Study(StudyCommand::AnswerText(text)));
         }
     });
+}
+
+/// Sets the cursor of a field that gets the focus behind what stands there.
+fn write_on(ui: &Ui, field: Id, length: usize) {
+    let mut kept = TextEdit::load_state(ui.ctx(), field).unwrap_or_default();
+    kept.cursor.set_char_range(Some(CCursorRange::one(CCursor::new(length))));
+    kept.store(ui.ctx(), field);
 }
 
 /// What is written of the numbers of nodes in this frame.
@@ -152,21 +161,11 @@ fn tried(ui: &mut Ui, one: &Try, palette: &Palette) {
     ui.add_space(3.0);
 }
 
-/// Continue, hint, explore, and the score.
+/// Hint, back, explore and the score, and below them what leads on: always at the same place, so that a second click
+/// does nothing else.
 fn ways_on(ui: &mut Ui, study: &Study, commands: &mut Vec<Command>, palette: &Palette) {
     part(ui, "ways on", |ui| {
         ui.horizontal_wrapped(|ui| {
-            if !study.is_over {
-                let text = RichText::new(onward(study)).font(theme::semibold(theme::BODY));
-                // The one thing that leads on stands out, unless a question is to be answered first.
-                let button = match study.is_asking() {
-                    true => Button::new(text),
-                    false => Button::new(text.color(ink(palette.ground))).fill(ink(palette.base)),
-                };
-                let response = ui.add_enabled(study.taught.is_some(), button);
-                let command = Command::Study(StudyCommand::Continue);
-                on_click(&response.on_hover_text("Enter"), command, commands);
-            }
             if let Some(posed) = study.posed().filter(|_| study.is_asking()) {
                 let more = study.hints < posed.hints.len();
                 let hint = ui.add_enabled(more, Button::new("Hint")).on_hover_text("H");
@@ -178,6 +177,20 @@ fn ways_on(ui: &mut Ui, study: &Study, commands: &mut Vec<Command>, palette: &Pa
             on_click(&ui.button("Explore freely").on_hover_text("E"), Command::Study(StudyCommand::Explore), commands);
             if matches!(study.subject, Subject::Prediction { .. }) && !study.score.given().is_empty() {
                 on_click(&ui.button("Save the answers"), Command::Study(StudyCommand::Save), commands);
+            }
+        });
+        ui.add_space(4.0);
+        ui.horizontal_wrapped(|ui| {
+            if !study.is_over {
+                let text = RichText::new(onward(study)).font(theme::semibold(theme::BODY));
+                // The one thing that leads on stands out, unless a question is to be answered first.
+                let button = match study.is_asking() {
+                    true => Button::new(text),
+                    false => Button::new(text.color(ink(palette.ground))).fill(ink(palette.base)),
+                };
+                let response = ui.add_enabled(study.taught.is_some(), button);
+                let command = Command::Study(StudyCommand::Continue);
+                on_click(&response.on_hover_text("Enter"), command, commands);
             }
             let tally = study.score.tally();
             if tally.all() > 0 {
