@@ -117,8 +117,7 @@ fn not_on_front(state: &Converter<'_>, ends: [NodeId; 2]) -> String {
         Some(EdgeKind::Live) => {
             format!("{name} lies between two live triangles, and a base is a segment of the front.")
         }
-        Some(_) => format!("{name} has no live triangle beside it any more, and a base is a segment of the front."),
-        None => format!("No edge joins {name} at this step."),
+        _ => format!("{name} has no live triangle beside it any more, and a base is a segment of the front."),
     }
 }
 

@@ -120,7 +120,7 @@ pub fn narration(event: &Event, base: Option<[NodeId; 2]>) -> String {
 fn selection(event: &Event) -> String {
     match *event {
         Event::BaseSelected { a, b, selection, picked, .. } if selection != Selection::Table1 => {
-            let order = order(event, selection);
+            let order = order(event);
             match picked {
                 true => {
                     format!("segment {}, which you chose, is the base; the rules order by {order}", segment([a, b]))
@@ -158,8 +158,8 @@ fn selection(event: &Event) -> String {
 }
 
 /// By what a rule other than table 1 orders the segments (4.3.3), and what the base has of it.
-fn order(event: &Event, selection: Selection) -> String {
-    let Event::BaseSelected { theta, level, length_metric, length_physical, .. } = *event else {
+fn order(event: &Event) -> String {
+    let Event::BaseSelected { theta, level, length_metric, length_physical, selection, .. } = *event else {
         return String::new();
     };
     let [at_a, at_b] = theta.map(degrees);
