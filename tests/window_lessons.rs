@@ -322,7 +322,7 @@ fn what_a_question_is_about_is_lit_alone() {
 #[test]
 fn digits_are_an_answer_while_one_is_asked_for_and_layers_else() {
     let Some(mut window) = window(Source::Lesson("figure-13".to_owned())) else { return };
-    let layers = |window: &Window| window.state().state.document().layers.clone();
+    let layers = |window: &Window| window.state().state.document().layers;
     let before = layers(&window);
     taught(&mut window);
     while window.state().state.study().unwrap().posed().is_none_or(|posed| posed.asked.kind != Kind::Segment) {
