@@ -18,6 +18,7 @@ use crate::core::formats::Format;
 use crate::core::question::Series;
 use crate::core::record::report::figures::{FIGURES, Figure};
 use crate::core::run::Run;
+use crate::core::soup::Ignored;
 
 /// quadfront: anisotropic quadrilateral meshes after Lee & Lee (2002).
 #[derive(Parser)]
@@ -158,18 +159,26 @@ pub(super) struct MeshArguments {
     /// Multiply the coordinates of MESH (0.001: from millimetres to metres)
     #[arg(long, value_name = "FACTOR")]
     scale: Option<f64>,
+    /// Read MESH as if it had no groups, or not those of these names
+    #[arg(long, value_name = "NAME,...", num_args = 0..=1, require_equals = true, default_missing_value = "")]
+    ignore_groups: Option<String>,
 }
 
 impl MeshArguments {
     /// The options that they set.
     pub fn options(&self) -> ImportOptions {
-        let &MeshArguments { used, split_odd, mesh_size, curvature, feature_angle, chart_stretch, scale } = self;
-        ImportOptions { used, split_odd, mesh_size, curvature, feature_angle, chart_stretch, scale }
+        let &MeshArguments { used, split_odd, mesh_size, curvature, feature_angle, chart_stretch, scale, .. } = self;
+        let ignore_groups = match self.ignore_groups.as_deref() {
+            None => Ignored::Nothing,
+            Some("") => Ignored::All,
+            Some(names) => Ignored::Named(names.split(',').map(|name| name.trim().to_owned()).collect()),
+        };
+        ImportOptions { used, split_odd, mesh_size, curvature, feature_angle, chart_stretch, scale, ignore_groups }
     }
 
     /// The options as command-line arguments.
     pub fn words(&self) -> Vec<String> {
-        let &MeshArguments { used, split_odd, mesh_size, curvature, feature_angle, chart_stretch, scale } = self;
+        let &MeshArguments { used, split_odd, mesh_size, curvature, feature_angle, chart_stretch, scale, .. } = self;
         let number = |name: &str, value: Option<f64>| value.map(|value| format!("--{name}={value}"));
         let words = [
             used.map(|used| format!("--use={}", used.name())),
@@ -179,6 +188,10 @@ impl MeshArguments {
             number("feature-angle", feature_angle),
             number("chart-stretch", chart_stretch),
             number("scale", scale),
+            self.ignore_groups.as_ref().map(|names| match names.as_str() {
+                "" => "--ignore-groups".to_owned(),
+                names => format!("--ignore-groups={names}"),
+            }),
         ];
         words.into_iter().flatten().collect()
     }

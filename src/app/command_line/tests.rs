@@ -10,13 +10,13 @@ fn the_arguments_do_not_contradict_each_other() {
 fn inputs_read_back_from_their_arguments() {
     let line = "quadfront sweep a --from msh --sol b.sol --set c=1.5 --set size_scale=0.5 --face left --paper \
                 --use shape --split-odd --mesh-size 0.1 --curvature 0.01 --feature-angle 30 --chart-stretch 3 \
-                --scale 0.001";
+                --scale 0.001 --ignore-groups=a,b";
     let words = |line: &[&str]| match Cli::try_parse_from(line).unwrap().command {
         Some(Command::Sweep(read)) => [read.source.words(), read.mesh.words()].concat(),
         _ => Vec::new(),
     };
     let first = words(&line.split_whitespace().collect::<Vec<_>>());
-    assert_eq!(first.len(), 14, "{first:?}");
+    assert_eq!(first.len(), 15, "{first:?}");
     let again: Vec<_> = ["quadfront", "sweep"].into_iter().chain(first.iter().map(String::as_str)).collect();
     assert_eq!(words(&again), first);
 }

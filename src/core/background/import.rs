@@ -16,13 +16,14 @@ use super::clash::too_thin;
 use super::cut::{Cut, CutMesh, Side, cut, sorted_sides};
 use crate::core::discrete::Triangles;
 use crate::core::discrete::defects::{capital, crossed, overlapping, used_points};
+use crate::core::discrete::further::groups_by_place;
 use crate::core::discrete::lines::on_edges;
 use crate::core::discrete::repair::retain;
 use crate::core::fault::Fault;
 use crate::core::kernel::decimal::{number, point_text};
 use crate::core::kernel::predicates::{firm, orient};
 use crate::core::kernel::{LogMetric3, Metric3};
-use crate::core::mesh::{Named, TriangleSet};
+use crate::core::mesh::{Further, Named, TriangleSet};
 use crate::core::progress::Cancel;
 use crate::core::soup::{MeshFile, Repair};
 
@@ -41,6 +42,8 @@ pub struct Imported {
     pub regions: Vec<Named>,
     /// Names of the lines by number, likewise.
     pub lines: Vec<Named>,
+    /// The groups that divide nothing.
+    pub further: Further,
     /// The repairs and omissions, sentences without a full stop.
     pub repairs: Vec<String>,
 }
@@ -57,9 +60,9 @@ impl Imported {
 }
 
 /// Imports a planar triangle mesh. Regions are the tags of the triangles in ascending order. A part is a set of
-/// triangles of one region that edges off the lines connect. Two parts with odd numbers of triangles become even by a
-/// division of the longest side on a line between them. If that is not possible, a part is refused or, with
-/// `split_odd`, its longest boundary segment that no other region shares is divided.
+/// triangles of one region that edges off the lines connect. Parts with odd numbers of triangles become even by the
+/// division of sides between parts, as few as possible, of those between two parts the longest. If that is not
+/// possible, a part is refused or, with `split_odd`, its longest boundary segment is divided.
 ///
 /// # Errors
 /// All that the module documentation lists, with the triangles as numbered in the file, and coordinates.
@@ -335,7 +338,9 @@ impl<'a> Import<'a> {
             }
         }
         let origin = origin.into_iter().map(|n| self.origin[n as usize]).collect();
-        Imported { set, origin, regions: names, lines: self.groups, repairs: self.repairs }
+        let faces = groups_by_place(self.given, &set.uv, &set.triangles, &self.element, &mut self.repairs);
+        let further = Further { lines: self.file.further_lines(), faces, ..Further::default() };
+        Imported { set, origin, regions: names, lines: self.groups, further, repairs: self.repairs }
     }
 }
 

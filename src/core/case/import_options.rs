@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use super::{Case, DomainSource, MeshSource, MeshUse, VERSION};
 use crate::core::fault::Fault;
+use crate::core::soup::Ignored;
 
 /// With [`ImportOptions::curvature`], the smallest size is [`ImportOptions::mesh_size`] divided by this.
 const FINEST: f64 = 100.0;
@@ -26,6 +27,8 @@ pub struct ImportOptions {
     pub chart_stretch: Option<f64>,
     /// Factor on all coordinates.
     pub scale: Option<f64>,
+    /// The groups of the mesh that are ignored.
+    pub ignore_groups: Ignored,
 }
 
 impl ImportOptions {
@@ -40,6 +43,17 @@ impl ImportOptions {
         line("feature_angle", number(self.feature_angle));
         line("chart_stretch", number(self.chart_stretch));
         line("scale", number(self.scale));
+        line(
+            "ignore_groups",
+            match &self.ignore_groups {
+                Ignored::Nothing => None,
+                Ignored::All => Some("true".to_owned()),
+                Ignored::Named(names) => {
+                    let quoted = names.iter().map(|name| toml::Value::String(name.clone()).to_string());
+                    Some(format!("[{}]", quoted.collect::<Vec<_>>().join(", ")))
+                }
+            },
+        );
         if let Some(h) = self.mesh_size {
             let metric = match self.curvature {
                 None => format!("[[metric]]\nkind = \"uniform\"\nh = {h:?}"),

@@ -30,7 +30,7 @@ use crate::core::fault::{Fault, FaultKind};
 use crate::core::formats::save::load;
 use crate::core::geometry::{ComplexSpec, CurveSpec, FaceSpec};
 use crate::core::metric::FieldSpec;
-use crate::core::soup::MeshFile;
+use crate::core::soup::{Ignored, MeshFile};
 
 /// The supported version of case files.
 pub const VERSION: u32 = 1;
@@ -86,6 +86,8 @@ pub struct Case {
     pub gradation: Option<f64>,
     /// Whether a boundary with a fixed odd number of segments may get one more; otherwise it is rejected.
     pub split_odd: bool,
+    /// The groups of its mesh that are ignored.
+    pub ignore_groups: Ignored,
     /// The text of the file, for reports; empty for a mesh without a case file.
     pub text: String,
 }
@@ -141,6 +143,7 @@ impl Case {
             "parameters",
             "gradation",
             "split_odd",
+            "ignore_groups",
             "surface",
             "curve",
             "face",
@@ -169,6 +172,7 @@ impl Case {
             parameters: parameters(&table)?,
             gradation: gradation(&table)?,
             split_odd: table.get("split_odd").map_or(Ok(false), |v| v.flag())?,
+            ignore_groups: table.get("ignore_groups").map_or(Ok(Ignored::Nothing), |v| taking::ignored(&v))?,
             domain,
             fields,
             text: text.to_owned(),
@@ -209,6 +213,7 @@ impl Case {
             fields: Vec::new(),
             gradation: None,
             split_odd: false,
+            ignore_groups: Ignored::Nothing,
             text: String::new(),
         }
     }
@@ -250,7 +255,7 @@ fn domain(table: &Table<'_>, folder: &Path) -> Result<DomainSource, Fault> {
         let source = MeshSource::File { path, sol: file("sol")? };
         return Ok(DomainSource::Mesh { source, taking: taking::taking(table)? });
     }
-    for key in ["sol", "use", "feature_angle", "chart_stretch", "scale"] {
+    for key in ["sol", "use", "feature_angle", "chart_stretch", "scale", "ignore_groups"] {
         if let Some(value) = table.get(key) {
             return Err(value.fault(format!("{key} is given without mesh")).remedy("Write mesh = \"...\" too"));
         }

@@ -3,12 +3,12 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use super::table::Table;
+use super::table::{Table, Value};
 use crate::core::discrete::StretchBound;
 use crate::core::discrete::features::ANGLE;
 use crate::core::fault::Fault;
 use crate::core::kernel::Metric3;
-use crate::core::soup::MeshFile;
+use crate::core::soup::{Ignored, MeshFile};
 
 /// Where a mesh is.
 #[derive(Clone, Debug, PartialEq)]
@@ -130,4 +130,16 @@ pub(super) fn taking(table: &Table<'_>) -> Result<Taking, Fault> {
     taking.chart_stretch = between("chart_stretch", taking.chart_stretch, Taking::STRETCHES, "a stretch", "")?;
     taking.scale = between("scale", 1.0, Taking::SCALES, "a factor", "")?;
     Ok(taking)
+}
+
+/// Reads the groups that are ignored: all or none, or a list of names.
+pub(super) fn ignored(value: &Value<'_>) -> Result<Ignored, Fault> {
+    match value.flag() {
+        Ok(true) => Ok(Ignored::All),
+        Ok(false) => Ok(Ignored::Nothing),
+        Err(_) => {
+            let wrong = |_| value.wrong("true, false or a list of names", "ignore_groups = [\"load\"]");
+            value.texts().map(Ignored::Named).map_err(wrong)
+        }
+    }
 }

@@ -10,6 +10,7 @@ pub(crate) mod lines;
 pub(in crate::core) mod defects;
 pub mod repair;
 pub mod features;
+pub(in crate::core) mod further;
 mod planar_map;
 pub mod chart;
 mod dissection;

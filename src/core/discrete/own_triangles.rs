@@ -12,7 +12,7 @@ use super::right_angled::right_angles;
 use super::surface::{Surface, sides};
 use crate::core::fault::Fault;
 use crate::core::kernel::decimal::point_text;
-use crate::core::kernel::parity::toggles;
+use crate::core::kernel::parity::fewest_toggles;
 use crate::core::kernel::predicates::firm;
 use crate::core::kernel::{DisjointSets, LogMetric3, Metric3};
 use crate::core::mesh::{PointId, TriangleSet};
@@ -271,7 +271,7 @@ impl Borders {
         }
         let cost: Vec<Option<f64>> =
             longest.values().map(|(long, _)| Some(1.0 / long.max(f64::MIN_POSITIVE))).collect();
-        let toggled = toggles(&rows, &self.odd, &cost)?;
+        let toggled = fewest_toggles(&rows, &self.odd, &cost)?;
         let chosen = longest.values().zip(toggled).filter(|(_, toggled)| *toggled);
         Ok(chosen.map(|((_, edge), _)| edges.get(*edge).ends).collect())
     }

@@ -10,6 +10,7 @@ use rustc_hash::FxHashMap;
 use super::chart::{Chart, charts};
 use super::edges::{Edge, Edges, Triangles};
 use super::features::{ANGLE, features, with_lines};
+use super::further::groups_by_place;
 use super::planar_map::StretchBound;
 use crate::core::fault::Fault;
 use crate::core::geometry::complex::{Lifted, assemble};
@@ -17,10 +18,11 @@ use crate::core::geometry::lifting::Piece;
 use crate::core::geometry::{Domain, FaceSpec, FaceSurface, Facets, Image, NamedCurve, SpaceCurve};
 use crate::core::kernel::Metric3;
 use crate::core::kernel::box_tree::extent;
-use crate::core::mesh::names;
+use crate::core::mesh::{GroupsByPlace, names};
 use crate::core::metric::Field;
 use crate::core::metric::gradation::bound_gradation;
 use crate::core::progress::Watch;
+use crate::core::soup::MeshFile;
 
 /// Implied sizes: the largest angle by which the surface turns within an element (radians).
 const MOST_TURN: f64 = std::f64::consts::FRAC_PI_6;
@@ -139,15 +141,37 @@ impl Surface {
     /// # Errors
     /// Metrics that are not positive definite.
     pub fn table(&self, metrics: &[Metric3]) -> Result<Field, Fault> {
-        let (mut uv, mut triangles, mut at) = (Vec::new(), Vec::new(), Vec::new());
+        let (uv, triangles) = self.flat();
+        let at = self.charts.iter().flat_map(|chart| &chart.points).map(|&p| metrics[p as usize]).collect();
+        Field::table(&uv, &triangles, at)
+    }
+
+    /// The groups of the file that overlap others; `mesh` are the triangles of the surface.
+    pub fn groups_by_place(
+        &self,
+        file: &MeshFile,
+        mesh: &Triangles,
+        repairs: &mut Vec<String>,
+    ) -> Option<Arc<GroupsByPlace>> {
+        if file.members.iter().all(|members| members.dimension != 2) {
+            return None;
+        }
+        let (uv, triangles) = self.flat();
+        let of_charts = self.charts.iter().flat_map(|chart| &chart.triangles);
+        let element: Vec<u32> = of_charts.filter_map(|&t| mesh.origin.get(t as usize).copied()).collect();
+        groups_by_place(file, &uv, &triangles, &element, repairs)
+    }
+
+    /// The triangles of all charts in the plane of the atlas.
+    fn flat(&self) -> (Vec<DVec2>, Vec<[u32; 3]>) {
+        let (mut uv, mut triangles) = (Vec::new(), Vec::new());
         for (k, chart) in self.charts.iter().enumerate() {
             let offset = self.domain.spatial.as_ref().map_or(DVec2::ZERO, |spatial| spatial.atlas.offset(k));
             let first = uv.len() as u32;
             uv.extend(chart.uv.iter().map(|p| *p + offset));
-            at.extend(chart.points.iter().map(|&p| metrics[p as usize]));
             triangles.extend(chart.local.iter().map(|t| t.map(|node| first + node)));
         }
-        Field::table(&uv, &triangles, at)
+        (uv, triangles)
     }
 }
 

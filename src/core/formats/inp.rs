@@ -9,12 +9,12 @@ use std::io::{self, Write};
 pub use read::read;
 
 use crate::core::kernel::Shortest;
-use crate::core::soup::MeshFile;
 use crate::core::soup::mesh_file::tag_of;
+use crate::core::soup::{Members, MeshFile};
 
 /// Writes nodes (numbered from 1), triangles as S3 and quadrilaterals as S4 (numbered from 1, triangles first); an
-/// ELSET for each group of elements; and for each group of lines an NSET and a SURFACE of the element edges along its
-/// lines.
+/// ELSET for each group of elements; for each group of lines an NSET and a SURFACE of the element edges along its
+/// lines; and an NSET for each group of points.
 ///
 /// # Errors
 /// Those of `out`.
@@ -38,8 +38,31 @@ pub fn write(out: &mut dyn Write, mesh: &MeshFile) -> io::Result<()> {
             nodes.entry(tag).or_default().extend(line.iter().map(|&node| u64::from(node) + 1));
         }
     }
+    let further = |dimension| mesh.members.iter().filter(move |m: &&Members| m.dimension == dimension && m.tag != 0);
+    let listed = |members: &Members| members.of.iter().map(|&k| u64::from(k) + 1).collect::<Vec<_>>();
+    for members in further(1) {
+        for &line in &members.of {
+            nodes.entry(members.tag).or_default().extend(mesh.lines[line as usize].map(|node| u64::from(node) + 1));
+        }
+    }
+    // Regions come first: of sets that overlap the reader takes the first one.
+    for members in further(2) {
+        if let Some(own) = elements.get_mut(&members.tag) {
+            own.extend(listed(members));
+            own.sort_unstable();
+        }
+    }
+    let alone: Vec<&Members> = further(2).filter(|members| !elements.contains_key(&members.tag)).collect();
     for (tag, numbers) in elements {
         write_set(out, "ELSET", &set_name(mesh.group_name(2, tag), "SURFACE", tag), &numbers)?;
+    }
+    for members in alone {
+        let name = set_name(mesh.group_name(2, members.tag), "SURFACE", members.tag);
+        write_set(out, "ELSET", &name, &listed(members))?;
+    }
+    for members in further(0) {
+        let name = set_name(mesh.group_name(0, members.tag), "POINT", members.tag);
+        write_set(out, "NSET", &name, &listed(members))?;
     }
     for (tag, mut numbers) in nodes {
         numbers.sort_unstable();
@@ -50,6 +73,10 @@ pub fn write(out: &mut dyn Write, mesh: &MeshFile) -> io::Result<()> {
     let mut edges: BTreeMap<u32, Vec<(usize, usize)>> = BTreeMap::new();
     for (&i, side) in lines.iter().zip(mesh.sides_at(&lines)) {
         edges.entry(tag_of(&mesh.line_tags, i)).or_default().extend(side);
+    }
+    for members in further(1) {
+        let lines: Vec<usize> = members.of.iter().map(|&i| i as usize).collect();
+        edges.entry(members.tag).or_default().extend(mesh.sides_at(&lines).into_iter().flatten());
     }
     for (tag, sides) in edges.into_iter().filter(|(_, sides)| !sides.is_empty()) {
         writeln!(out, "*SURFACE, TYPE=ELEMENT, NAME={}", set_name(mesh.group_name(1, tag), "CURVE", tag))?;

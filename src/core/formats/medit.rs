@@ -1,9 +1,9 @@
 //! Medit's text formats: meshes (`.mesh`) and their metrics (`.sol`).
 //!
 //! Deliberately absent: the binary formats (`.meshb`, `.solb`), rejected by [`Format`](super::format::Format); sections
-//! other than vertices, edges, triangles and quadrilaterals (corners, ridges, required vertices) are ignored.
+//! other than vertices, required vertices, edges, triangles and quadrilaterals (corners, ridges) are ignored.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::io::{self, Write};
 
 use glam::DVec3;
@@ -12,8 +12,8 @@ use super::scan::{Scanner, shown};
 use crate::core::fault::Fault;
 use crate::core::kernel::{Metric3, Shortest};
 use crate::core::progress::{Nobody, Pace, Reading};
-use crate::core::soup::MeshFile;
 use crate::core::soup::mesh_file::tag_of;
+use crate::core::soup::{Members, MeshFile};
 
 /// Reads a mesh from the bytes of a `.mesh` file; `name` is the file's name in messages. References become tags.
 ///
@@ -23,7 +23,7 @@ pub fn read(name: &str, bytes: &[u8], pace: &dyn Pace) -> Result<MeshFile, Fault
     let mut s = Scanner::new(name, bytes).with_comments(b'#').watched(pace);
     let dimension = header(&mut s)?;
     let mut mesh = MeshFile::default();
-    let mut skipped = BTreeMap::new();
+    let (mut skipped, mut required) = (BTreeMap::new(), Vec::new());
     // Elements may precede the vertices: the largest index, with its position in the file, is checked at the end.
     let mut largest = (0, 0);
     while let Some(word) = s.word() {
@@ -42,6 +42,12 @@ pub fn read(name: &str, bytes: &[u8], pace: &dyn Pace) -> Result<MeshFile, Fault
                     }
                     s.integer("a reference")?;
                     mesh.points.push(p);
+                }
+            }
+            b"RequiredVertices" => {
+                let count = s.count("a number of vertices", 2)?;
+                for _ in 0..count {
+                    required.push(vertex(&mut s, &mut largest)?);
                 }
             }
             b"Edges" => elements(&mut s, &mut mesh.lines, &mut mesh.line_tags, &mut largest)?,
@@ -81,6 +87,11 @@ pub fn read(name: &str, bytes: &[u8], pace: &dyn Pace) -> Result<MeshFile, Fault
         return Err(s.fault_at(largest.1, what));
     }
     mesh.clear_zero_tags();
+    if !required.is_empty() {
+        required.sort_unstable();
+        required.dedup();
+        mesh.members.push(Members { dimension: 0, tag: 0, of: required });
+    }
     mesh.skipped = skipped.into_iter().collect();
     Ok(mesh)
 }
@@ -121,14 +132,7 @@ fn elements<const N: usize>(
     for _ in 0..count {
         let mut corners = [0; N];
         for corner in &mut corners {
-            let index = s.whole("a vertex")?;
-            *corner = match u32::try_from(index) {
-                Ok(index @ 1..) => index - 1,
-                _ => return Err(s.fault(format!("An element refers to vertex {index}, which does not exist"))),
-            };
-            if index as usize > largest.0 {
-                *largest = (index as usize, s.mark());
-            }
+            *corner = vertex(s, largest)?;
         }
         list.push(corners);
         let tag = s.integer("a reference")?;
@@ -136,6 +140,18 @@ fn elements<const N: usize>(
         tags.push(u32::try_from(tag).unwrap_or(0));
     }
     Ok(())
+}
+
+/// Reads the number of a vertex, and returns its index.
+fn vertex(s: &mut Scanner, largest: &mut (usize, usize)) -> Result<u32, Fault> {
+    let number = s.whole("a vertex")?;
+    let Ok(index @ 1..) = u32::try_from(number) else {
+        return Err(s.fault(format!("An element refers to vertex {number}, which does not exist")));
+    };
+    if index as usize > largest.0 {
+        *largest = (index as usize, s.mark());
+    }
+    Ok(index - 1)
 }
 
 /// Reads the metric at `count` vertices from the bytes of a `.sol` file: at each a size h, which becomes the tensor
@@ -219,6 +235,16 @@ pub fn write(out: &mut dyn Write, mesh: &MeshFile) -> io::Result<()> {
             write!(out, "{} ", Shortest(p[axis]))?;
         }
         writeln!(out, "0")?;
+    }
+    let required: BTreeSet<u32> = mesh
+        .members
+        .iter()
+        .filter(|members| members.dimension == 0)
+        .flat_map(|members| members.of.iter().copied())
+        .collect();
+    if !required.is_empty() {
+        writeln!(out, "\nRequiredVertices\n{}", required.len())?;
+        required.iter().try_for_each(|&k| writeln!(out, "{}", u64::from(k) + 1))?;
     }
     write_elements(out, "Edges", &mesh.lines, &mesh.line_tags)?;
     write_elements(out, "Triangles", &mesh.triangles, &mesh.triangle_tags)?;

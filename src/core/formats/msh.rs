@@ -8,6 +8,7 @@
 mod input;
 mod read;
 mod data;
+mod groups;
 mod write;
 
 pub use read::read;

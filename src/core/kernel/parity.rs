@@ -1,7 +1,13 @@
 //! Even loops (docs/algorithm.md, "Even loops"): which curves get one segment more or fewer, so that every topological
 //! loop is even. A linear system over GF(2) with a row for each loop and a column for each curve.
 
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+
 use rustc_hash::FxHashMap;
+
+/// Up to this many odd rows the fewest toggles are searched: the search takes 2^n steps.
+const MOST_ODD: usize = 14;
 
 /// Solves `A x = b` over GF(2): `x[c]` says whether to toggle column `c`. Row `r` of `A` has ones in the columns
 /// `rows[r]` (each at most once: the caller drops a curve that a loop traverses twice), and `odd[r]` is its right-hand
@@ -55,6 +61,120 @@ pub fn toggles(rows: &[Vec<u32>], odd: &[bool], cost: &[Option<f64>]) -> Result<
     Ok(toggled)
 }
 
+/// As [`toggles`], with as few columns as possible, of these the cheapest, where that can be found: every column is in
+/// at most two rows, and few rows are odd. Rows are then the vertices of a graph, columns its edges (one of a single
+/// row leads to the outside), and the toggles pair the odd vertices by shortest paths.
+///
+/// # Errors
+/// As [`toggles`].
+pub fn fewest_toggles(rows: &[Vec<u32>], odd: &[bool], cost: &[Option<f64>]) -> Result<Vec<bool>, Vec<u32>> {
+    let feasible = toggles(rows, odd, cost)?;
+    let mut ends: Vec<Vec<u32>> = vec![Vec::new(); cost.len()];
+    for (r, columns) in (0..).zip(rows) {
+        columns.iter().for_each(|&c| ends[c as usize].push(r));
+    }
+    if ends.iter().any(|ends| ends.len() > 2) {
+        return Ok(feasible);
+    }
+    let outside = rows.len() as u32;
+    let mut graph: Vec<Vec<(u32, u32, Path)>> = vec![Vec::new(); rows.len() + 1];
+    for (c, (ends, cost)) in (0..).zip(ends.iter().zip(cost)) {
+        if let (&[a, ref rest @ ..], Some(cost)) = (&ends[..], cost) {
+            let b = rest.first().copied().unwrap_or(outside);
+            let step = Path { columns: 1, cost: *cost };
+            graph[a as usize].push((b, c, step));
+            graph[b as usize].push((a, c, step));
+        }
+    }
+    let mut terminals: Vec<u32> = (0..outside).filter(|&r| odd[r as usize]).collect();
+    // The outside takes what is left over of the part that reaches it.
+    let (from_outside, _) = shortest(&graph, outside);
+    if terminals.iter().filter(|&&r| from_outside[r as usize].is_some()).count() % 2 == 1 {
+        terminals.push(outside);
+    }
+    if terminals.len() > MOST_ODD {
+        return Ok(feasible);
+    }
+    let trees: Vec<_> = terminals.iter().map(|&r| shortest(&graph, r)).collect();
+    let between = |a: usize, b: usize| trees[a].0[terminals[b] as usize];
+    let mut toggled = vec![false; cost.len()];
+    for [a, b] in pairs(terminals.len(), &between) {
+        let mut at = terminals[b];
+        while let Some((before, column)) = trees[a].1[at as usize] {
+            toggled[column as usize] ^= true;
+            at = before;
+        }
+    }
+    Ok(toggled)
+}
+
+/// What a path takes: fewer columns are better, then lower cost.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Path {
+    columns: u32,
+    cost: f64,
+}
+
+impl Path {
+    fn and(self, other: Path) -> Path {
+        Path { columns: self.columns + other.columns, cost: self.cost + other.cost }
+    }
+
+    /// Sorts like the path: the bits of positive numbers sort like the numbers.
+    fn key(self) -> (u32, u64) {
+        (self.columns, self.cost.to_bits())
+    }
+}
+
+/// The best path from a vertex to each other one, and the last step of it: the vertex before and the column.
+type Tree = (Vec<Option<Path>>, Vec<Option<(u32, u32)>>);
+
+/// Dijkstra's algorithm; ties go to the lower vertex.
+fn shortest(graph: &[Vec<(u32, u32, Path)>], from: u32) -> Tree {
+    let (mut best, mut step) = (vec![None; graph.len()], vec![None; graph.len()]);
+    let none = Path { columns: 0, cost: 0.0 };
+    best[from as usize] = Some(none);
+    let mut heap = BinaryHeap::from([Reverse((none.key(), from))]);
+    while let Some(Reverse((key, at))) = heap.pop() {
+        let Some(here) = best[at as usize].filter(|path: &Path| path.key() == key) else { continue };
+        for &(to, column, more) in &graph[at as usize] {
+            let there = here.and(more);
+            if best[to as usize].is_none_or(|known| there.key() < known.key()) {
+                best[to as usize] = Some(there);
+                step[to as usize] = Some((at, column));
+                heap.push(Reverse((there.key(), to)));
+            }
+        }
+    }
+    (best, step)
+}
+
+/// The pairs of `n` terminals with the best sum of paths between them.
+fn pairs(n: usize, between: &dyn Fn(usize, usize) -> Option<Path>) -> Vec<[usize; 2]> {
+    // The best pairs of each set of terminals that are left over, by its bits.
+    let mut best: Vec<Option<(Path, usize, usize)>> = vec![None; 1 << n];
+    let mut sum: Vec<Option<Path>> = vec![None; 1 << n];
+    sum[0] = Some(Path { columns: 0, cost: 0.0 });
+    for set in 1_usize..1 << n {
+        let a = set.trailing_zeros() as usize;
+        for b in (a + 1..n).filter(|b| set >> b & 1 == 1) {
+            if let (Some(rest), Some(path)) = (sum[set & !(1 << a) & !(1 << b)], between(a, b)) {
+                let all = rest.and(path);
+                if best[set].is_none_or(|(known, ..)| all.key() < known.key()) {
+                    best[set] = Some((all, a, b));
+                }
+            }
+        }
+        sum[set] = best[set].map(|(all, ..)| all);
+    }
+    let (mut found, mut set) = (Vec::new(), (1 << n) - 1);
+    while let Some((_, a, b)) = best[set] {
+        found.push([a, b]);
+        set &= !(1 << a) & !(1 << b);
+    }
+    found
+}
+
 /// The symmetric difference of two ascending lists.
 fn symmetric_difference(a: &[u32], b: &[u32]) -> Vec<u32> {
     let mut both = [a, b].concat();
@@ -96,6 +216,38 @@ mod tests {
                         prop_assert_eq!(blamed.iter().filter(|&&r| rows[r as usize].contains(&c)).count() % 2, 0);
                     }
                 }
+            }
+        }
+
+        #[test]
+        fn the_fewest_toggles_are_as_few_as_by_brute_force(
+            sides in prop::collection::vec((0_usize..6, 0_usize..6), 1..11),
+            odd in prop::collection::vec(any::<bool>(), 5),
+            cost in prop::collection::vec(0.01..1.0, 11),
+        ) {
+            // Part 5 is the outside: it has no row.
+            let mut rows = vec![Vec::new(); 6];
+            for (c, &(a, b)) in sides.iter().enumerate().filter(|(_, (a, b))| a != b) {
+                rows[a].push(c as u32);
+                rows[b].push(c as u32);
+            }
+            rows.pop();
+            let cost: Vec<Option<f64>> = cost[..sides.len()].iter().map(|&cost| Some(cost)).collect();
+            let solves = |x: u32| (0..5).all(|r| sum(&rows[r], |c| x >> c & 1 == 1) == odd[r]);
+            let price = |x: u32| {
+                let of = cost.iter().enumerate().filter(|(c, _)| x >> c & 1 == 1);
+                (x.count_ones(), of.map(|(_, cost)| cost.unwrap()).sum::<f64>())
+            };
+            let all = (0..1_u32 << sides.len()).filter(|&x| solves(x)).map(price);
+            let least = all.min_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
+            match (fewest_toggles(&rows, &odd, &cost), least) {
+                (Ok(toggled), Some((count, paid))) => {
+                    let x = (0..sides.len()).map(|c| u32::from(toggled[c]) << c).sum();
+                    prop_assert!(solves(x));
+                    prop_assert_eq!(price(x).0, count);
+                    prop_assert!((price(x).1 - paid).abs() < 1e-9);
+                }
+                (found, least) => prop_assert!(found.is_err() && least.is_none()),
             }
         }
 

@@ -18,7 +18,7 @@ pub use half_edge::touched::Touched;
 pub use half_edge::{Difference, Embedding, FreeLists, Mesh, NewElement, Undone};
 pub use ids::{ElementId, HalfEdgeId, NodeId, PointId};
 pub use journal::Mark;
-pub use names::{Named, Names};
+pub use names::{Further, GroupsByPlace, Named, Names};
 pub use quality::{FULL_TURN, twelfths};
 pub use refusals::{Operation, Refusal, Refusals};
 pub use triangle_set::TriangleSet;

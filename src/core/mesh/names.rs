@@ -1,4 +1,8 @@
-//! The names of the faces of a mesh, and of the lines on which its fixed sides lie.
+//! The names of the faces of a mesh, of the lines on which its fixed sides lie, and of the groups besides.
+
+use std::sync::Arc;
+
+use glam::DVec2;
 
 use super::ids::PointId;
 
@@ -20,6 +24,30 @@ pub struct Names {
     pub lines: Vec<Named>,
     /// The points at the ends of sides, ascending, and the line on which they lie.
     sides: Vec<([PointId; 2], u32)>,
+    /// Groups besides those of faces and lines.
+    pub further: Further,
+}
+
+/// Groups that divide nothing: of points, and of elements and lines that are also in another group.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Further {
+    /// Points that are kept, each with its group, if it is in one.
+    pub points: Vec<(Option<Named>, PointId)>,
+    /// Groups of lines, each with the numbers of its lines.
+    pub lines: Vec<(Named, Vec<u32>)>,
+    /// Groups of elements.
+    pub faces: Option<Arc<GroupsByPlace>>,
+}
+
+/// Groups of elements by their place: an element is in those of the given triangle around its middle.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct GroupsByPlace {
+    /// The corners of the given triangles in the parametric plane.
+    pub uv: Vec<DVec2>,
+    /// The given triangles.
+    pub triangles: Vec<[u32; 3]>,
+    /// The groups, each with its triangles by index.
+    pub groups: Vec<(Named, Vec<u32>)>,
 }
 
 impl Named {

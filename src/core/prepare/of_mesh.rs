@@ -42,6 +42,7 @@ pub(super) fn from_mesh(
         }
     };
     taking.scale(&mut file);
+    file.ignore_groups(&case.ignore_groups).map_err(|fault| fault.at(place.clone()))?;
     if !file.is_plane() || taking.used == Some(MeshUse::Shape) {
         return from_surface(case, &file, &place, taking, watch);
     }
@@ -76,7 +77,8 @@ pub(super) fn from_mesh(
         sizing = Sizing::new(vec![bounded(&mesh, &sizing, beta)?], 1.0);
         mesh = meshed(&sizing)?;
     }
-    let names = Names::of_faces(imported.regions).with_lines(imported.lines, imported.set.lines);
+    let mut names = Names::of_faces(imported.regions).with_lines(imported.lines, imported.set.lines);
+    names.further = imported.further;
     Ok(Background { mesh, sizing, names, adapted: Adapted::default(), repairs: imported.repairs })
 }
 
@@ -115,6 +117,7 @@ fn from_surface(
         });
     }
     let faces = surface.regions.clone();
+    let further = surface.groups_by_place(file, &mesh, &mut repairs);
     let lines = FileLines { names: lines, of_curve: surface.lines.clone() };
     let made = if converts {
         from_own_triangles(case, &mesh, &surface, fields, lines, &mut repairs)
@@ -123,6 +126,8 @@ fn from_surface(
     };
     let mut made = made.map_err(here)?;
     made.names.faces = faces;
+    made.names.further.lines = file.further_lines();
+    made.names.further.faces = further;
     Ok(Background { repairs, ..made })
 }
 

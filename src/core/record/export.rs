@@ -1,6 +1,8 @@
 //! Exports the converter's mesh for files and measurements: without tombstones, and with one point for all copies of a
 //! node.
 
+mod further;
+
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
@@ -73,7 +75,7 @@ impl Export {
             data("level", &|e| f64::from(mesh.level(e))),
             data("region", &|e| f64::from(tags.get(mesh.region(e) as usize).copied().unwrap_or(0))),
         ]);
-        let (_, front) = line_tags(&names.lines);
+        let (_, front) = line_tags(names);
         for h in mesh.front() {
             let nodes = mesh.ends(h);
             file.lines.push(nodes.map(|n| export.points[node_at[n.index()] as usize].0));
@@ -175,11 +177,13 @@ impl Export {
             sides.push(([a.min(b), a.max(b)], [a, b], line));
         }
         sides.sort_unstable();
-        let (of_line, _) = line_tags(&names.lines);
+        let mut line_of: Vec<Option<u32>> = Vec::new();
+        let (of_line, _) = line_tags(names);
         let [boundary, inside] = [BOUNDARY, INSIDE].map(|kind| of_line[names.lines.len() + kind as usize - 1]);
         for same in sides.chunk_by(|a, b| a.0 == b.0) {
             let named = same[0].2.map(|line| of_line[line as usize]);
             file.lines.push(same[0].1);
+            line_of.push(same[0].2);
             file.line_tags.push(named.unwrap_or(if same.len() == 1 { boundary } else { inside }));
         }
         let built_in = [boundary, inside].into_iter().zip(BUILT_IN);
@@ -194,6 +198,7 @@ impl Export {
                 file.groups.push(Group { dimension, tag, name: name.to_owned() });
             }
         }
+        further::add(&mut export, mesh, names, &line_of);
         (export, node_at)
     }
 
@@ -234,11 +239,12 @@ fn face_tags(mesh: &Mesh, names: &Names) -> Vec<u32> {
 }
 
 /// The tags of the lines, then of `boundary` and `inside`; and the tag of the merging front.
-fn line_tags(lines: &[Named]) -> (Vec<u32>, u32) {
-    let mut tags = tags_of(lines);
+fn line_tags(names: &Names) -> (Vec<u32>, u32) {
+    let mut tags = tags_of(&names.lines);
+    let further: Vec<u32> = names.further.lines.iter().filter_map(|(named, _)| named.tag).collect();
     // The default tags, or the next free ones.
     for own in [BOUNDARY, INSIDE, FRONT_TAG] {
-        let free = (own..).find(|tag| !tags.contains(tag)).unwrap_or(own);
+        let free = (own..).find(|tag| !tags.contains(tag) && !further.contains(tag)).unwrap_or(own);
         tags.push(free);
     }
     let front = tags.pop().unwrap_or(FRONT_TAG);

@@ -106,7 +106,8 @@ impl MeshFile {
     ///
     /// # Errors
     /// An element or line with a point that is not there; a polygon without three corners; tags or metric tensors that
-    /// are more or fewer than what they belong to; a tensor that is not positive definite and finite.
+    /// are more or fewer than what they belong to; members of groups that are not there; a tensor that is not positive
+    /// definite and finite.
     pub(in crate::core) fn check_lists(&self) -> Result<(), Fault> {
         let n = self.points.len();
         let kinds: [(&str, &mut dyn Iterator<Item = &[u32]>); 4] = [
@@ -136,6 +137,14 @@ impl MeshFile {
             if !tags.is_empty() && tags.len() != count {
                 let what = format!("There are {} {kind} tags for {count} {kind}s", tags.len());
                 return Err(Fault::new(what).remedy("Give one tag for each, or no tags"));
+            }
+        }
+        let elements = self.triangles.len() + self.quads.len() + self.polygons.len();
+        for members in &self.members {
+            let count = [n, self.lines.len(), elements][usize::from(members.dimension.min(2))];
+            if let Some(bad) = members.of.iter().find(|&&k| k as usize >= count) {
+                let what = format!("The group with the tag {} has a member {bad} of only {count}", members.tag);
+                return Err(Fault::new(what).remedy("Indices count from 0"));
             }
         }
         let metric = self.metric.as_deref().unwrap_or_default();

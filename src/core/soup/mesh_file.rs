@@ -32,6 +32,17 @@ pub struct Group {
     pub name: String,
 }
 
+/// Points in a group, or elements in a group besides the one of their tag.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Members {
+    /// Dimension of the group: 0 for points, 1 for lines, 2 for faces.
+    pub dimension: u8,
+    /// The tag of the group; 0 for points that must be kept, but are in no group.
+    pub tag: u32,
+    /// The points, the lines, or the elements (triangles, then quadrilaterals, then polygons), by ascending index.
+    pub of: Vec<u32>,
+}
+
 /// A named scalar field: one value for each point or element.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Data {
@@ -65,6 +76,8 @@ pub struct MeshFile {
     pub polygon_tags: Vec<u32>,
     /// Names of the groups.
     pub groups: Vec<Group>,
+    /// The points in groups, and the elements that are in groups besides the one of their tag.
+    pub members: Vec<Members>,
     /// The metric tensor at each point, if the file has one.
     pub metric: Option<Vec<Metric3>>,
     /// The position of each point in the parametric plane, if the file has one.
@@ -221,22 +234,7 @@ impl MeshFile {
 
     /// The region with a tag: the name of its group, or "region" and the tag.
     pub fn region(&self, tag: u32) -> Named {
-        Named::tagged(self.group_name(2, tag).map_or_else(|| format!("region {tag}"), str::to_owned), tag)
-    }
-
-    /// The line groups, and for each line the index of its group: `None` for lines without a tag and for the merging
-    /// front of an intermediate state, which is no feature of the shape.
-    pub fn line_groups(&self) -> (Vec<Named>, Vec<Option<u32>>) {
-        let tags: Vec<u32> = (0..self.lines.len()).map(|i| tag_of(&self.line_tags, i)).collect();
-        let is_group = |tag: &u32| *tag > 0 && self.group_name(1, *tag) != Some(FRONT);
-        let known: Vec<u32> = tags.iter().copied().filter(is_group).collect::<BTreeSet<u32>>().into_iter().collect();
-        let name = |&tag: &u32| {
-            Named::tagged(self.group_name(1, tag).map_or_else(|| format!("line {tag}"), str::to_owned), tag)
-        };
-        (
-            known.iter().map(name).collect(),
-            tags.iter().map(|tag| known.binary_search(tag).ok().map(|k| k as u32)).collect(),
-        )
+        self.named(2, tag)
     }
 
     /// For each triangle of [`MeshFile::triangulated`], the index of its original element, counting triangles, then
@@ -282,7 +280,8 @@ impl MeshFile {
 
     /// Clears the tags of each kind of element that has no tag but 0.
     pub(in crate::core) fn clear_zero_tags(&mut self) {
-        for tags in [&mut self.line_tags, &mut self.triangle_tags, &mut self.quad_tags] {
+        let tags = [&mut self.line_tags, &mut self.triangle_tags, &mut self.quad_tags, &mut self.polygon_tags];
+        for tags in tags {
             if tags.iter().all(|&tag| tag == 0) {
                 *tags = Vec::new();
             }

@@ -3,6 +3,7 @@
 
 pub mod mesh_file;
 mod counting;
+pub(in crate::core) mod groups;
 mod in_memory;
 mod polygons;
 pub(in crate::core) mod weld;
@@ -10,7 +11,8 @@ pub mod soundness;
 mod repairs;
 
 pub use counting::{Count, Counting, Elements};
-pub use mesh_file::{Data, Group, MeshFile, Texture};
+pub use groups::Ignored;
+pub use mesh_file::{Data, Group, Members, MeshFile, Texture};
 pub(in crate::core) use repairs::Repair;
 pub use soundness::{Allow, Defect, Soundness};
 pub(in crate::core) use weld::Welder;

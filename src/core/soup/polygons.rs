@@ -18,6 +18,13 @@ impl MeshFile {
         if cut == 0 {
             return (self, 0);
         }
+        if self.members.iter().any(|members| members.dimension == 2) {
+            let origins = self.origins();
+            for members in self.members.iter_mut().filter(|members| members.dimension == 2) {
+                let is_in = |t: &u32| members.of.binary_search(&origins[*t as usize]).is_ok();
+                members.of = (0..origins.len() as u32).filter(is_in).collect();
+            }
+        }
         let tagged = !self.triangle_tags.is_empty() || !self.quad_tags.is_empty() || !self.polygon_tags.is_empty();
         self.triangle_tags.resize(if tagged { self.triangles.len() } else { 0 }, 0);
         let quads = std::mem::take(&mut self.quads);

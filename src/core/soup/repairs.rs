@@ -15,10 +15,15 @@ pub(in crate::core) enum Repair {
     ContactPoint,
     PinchedNode,
     LineOffEdges,
+    FurtherGroup,
     UngroupedLine,
+    DividedInterface,
     DividedSegment,
     DividedSide,
 }
+
+/// Why sides of triangles are divided.
+const EVEN: &str = "divided to make triangle counts even";
 
 impl Repair {
     /// What was repaired, singular and plural, and how.
@@ -36,8 +41,10 @@ impl Repair {
             Repair::ContactPoint => ["contact point between parts", "contact points between parts", "split"],
             Repair::PinchedNode => ["node", "nodes", "split where triangles share only a point"],
             Repair::LineOffEdges => ["line on no edge of the mesh", "lines on no edge of the mesh", "ignored"],
+            Repair::FurtherGroup => ["group", "groups", "kept without a cut"],
             Repair::UngroupedLine => ["ungrouped line inside a region", "ungrouped lines inside regions", "ignored"],
-            Repair::DividedSegment => ["boundary segment", "boundary segments", "divided to make triangle counts even"],
+            Repair::DividedInterface => ["side between parts", "sides between parts", EVEN],
+            Repair::DividedSegment => ["boundary segment", "boundary segments", EVEN],
             Repair::DividedSide => ["side of a triangle", "sides of triangles", "divided to make counts even"],
         }
     }

@@ -10,11 +10,12 @@ use crate::core::background::cut::{Side, cut, sorted_sides};
 use crate::core::fault::Fault;
 use crate::core::kernel::DisjointSets;
 use crate::core::kernel::decimal::point_text;
-use crate::core::kernel::parity::toggles;
+use crate::core::kernel::parity::fewest_toggles;
 use crate::core::soup::Repair;
 
 impl Import<'_> {
-    /// Makes the number of triangles of every part even by the division of sides.
+    /// Makes the number of triangles of every part even by the division of as few sides as possible: sides between
+    /// two parts, of one region or of two, and with `split_odd` sides on the boundary.
     pub(super) fn even_parts(&mut self, split_odd: bool) -> Result<(), Fault> {
         let mut parts = DisjointSets::new(self.triangles.len());
         let on_line = |side: &Side| self.lines.contains_key(&side.ends());
@@ -31,13 +32,13 @@ impl Import<'_> {
         let mut count = vec![0_u32; part.len()];
         part.iter().for_each(|&p| count[p as usize] += 1);
         let Some(first) = (0..part.len()).find(|&p| count[p] % 2 == 1) else { return Ok(()) };
-        // The longest side on the boundary of each part, and on the lines between each two parts.
+        // The longest side on the boundary of each part, and between each two parts.
         let mut longest: BTreeMap<_, (f64, &[Side])> = BTreeMap::new();
         for group in self.sides.chunk_by(same_edge) {
             let at = |side: &Side| part[side.triangle()];
             let between = match group {
                 [a] if split_odd => (at(a), None),
-                [a, b] if at(a) != at(b) && one_region(a, b) => (at(a).min(at(b)), Some(at(a).max(at(b)))),
+                [a, b] if at(a) != at(b) => (at(a).min(at(b)), Some(at(a).max(at(b)))),
                 _ => continue,
             };
             let length = self.uv[group[0].low as usize].distance(self.uv[group[0].high as usize]);
@@ -53,7 +54,7 @@ impl Import<'_> {
         let odd: Vec<bool> = count.iter().map(|n| n % 2 == 1).collect();
         let cost: Vec<Option<f64>> =
             longest.values().map(|(length, _)| Some(1.0 / length.max(f64::MIN_POSITIVE))).collect();
-        let toggled = toggles(&rows, &odd, &cost).map_err(|blamed| {
+        let toggled = fewest_toggles(&rows, &odd, &cost).map_err(|blamed| {
             let named = blamed.iter().copied().find(|&p| odd[p as usize]).unwrap_or(first as u32);
             self.odd_fault(&part, named, count[named as usize], split_odd)
         })?;
@@ -67,7 +68,9 @@ impl Import<'_> {
         for sides in &chosen {
             self.divide(sides, &mut halves)?;
         }
-        Repair::DividedSegment.report(chosen.len(), &mut self.repairs);
+        let inside = chosen.iter().filter(|sides| sides.len() > 1).count();
+        Repair::DividedInterface.report(inside, &mut self.repairs);
+        Repair::DividedSegment.report(chosen.len() - inside, &mut self.repairs);
         self.sides = sorted_sides(self.uv.len(), &self.triangles);
         Ok(())
     }

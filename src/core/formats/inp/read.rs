@@ -9,7 +9,8 @@ use crate::core::fault::Fault;
 use crate::core::formats::numbering::{Numbering, sort_by_number};
 use crate::core::formats::scan::{Scanner, parse_whole, shown};
 use crate::core::progress::Pace;
-use crate::core::soup::{Count, Group, MeshFile};
+use crate::core::soup::groups::{Listed, by_region};
+use crate::core::soup::{Count, Group, Members, MeshFile};
 
 /// The number of corners of an Abaqus element type; 0 for a type that is skipped, `Err` for one of higher order.
 fn corners_of(kind: &str) -> Result<usize, ()> {
@@ -46,6 +47,8 @@ enum Section {
 #[derive(Default)]
 struct Sets {
     sets: NamedLists<Run>,
+    /// The sets to which sections of properties belong.
+    regions: Vec<usize>,
     surfaces: NamedLists<(u64, usize)>,
 }
 
@@ -64,8 +67,9 @@ struct Run {
     step: u64,
 }
 
-/// Reads nodes and elements, sorted by their numbers. Element sets become regions (an element in several sets belongs
-/// to the smallest), and edge surfaces become groups of lines. Node sets, parts and everything else are ignored.
+/// Reads nodes and elements, sorted by their numbers. Element sets become groups: where those with sections of
+/// properties cover all elements, they are the regions; else all that do not overlap (`soup::groups`), if the sets
+/// cover all elements. Edge surfaces become groups of lines. Node sets, parts and everything else are ignored.
 ///
 /// # Errors
 /// With the line: a malformed node or element, an element of higher order, or a node number that is used twice.
@@ -186,37 +190,43 @@ impl Sets {
         let index = |number: u64| numbers.get(from(number)).filter(|known| known.0 == number).map(|known| known.1);
         // Bounds the time for runs that repeat.
         let mut left = 16 * numbers.len();
-        let mut members: Vec<(usize, Vec<usize>)> = Vec::new();
-        for (set, (_, runs)) in self.sets.all.iter().enumerate() {
-            let mut own = Vec::new();
+        let mut listed: Vec<Listed> = Vec::new();
+        for (set, (name, runs)) in self.sets.all.iter().enumerate() {
+            let mut elements: Vec<u32> = Vec::new();
             for run in runs {
                 let all = numbers[from(run.first)..].iter().take_while(|known| known.0 <= run.last);
                 for known in all.take(left) {
                     left -= 1;
                     if (known.0 - run.first).is_multiple_of(run.step.max(1)) {
-                        own.push(known.1);
+                        elements.push(known.1 as u32);
                     }
                 }
             }
-            own.sort_unstable();
-            own.dedup();
-            if !own.is_empty() {
-                members.push((set, own));
+            elements.sort_unstable();
+            elements.dedup();
+            if !elements.is_empty() {
+                let tag = set as u32 + 1;
+                mesh.groups.push(Group { dimension: 2, tag, name: name.clone() });
+                listed.push(Listed { tag, elements, used: self.regions.contains(&set) });
             }
         }
-        members.sort_by_key(|(set, own)| (own.len(), *set));
-        let mut tags = vec![0; numbers.len()];
-        for (set, own) in members {
-            let tag = set as u32 + 1;
-            let mut any = false;
-            for element in own.into_iter().filter(|&element| tags[element] == 0).collect::<Vec<_>>() {
-                tags[element] = tag;
-                any = true;
-            }
-            if any {
-                mesh.groups.push(Group { dimension: 2, tag, name: self.sets.all[set].0.clone() });
-            }
+        // Sets are regions where they cover all elements: else they are for loads, output and the like.
+        let covers = |listed: &[Listed], used: bool| {
+            let mut is_in = vec![false; numbers.len()];
+            let elements = listed.iter().filter(|set| set.used || !used).flat_map(|set| &set.elements);
+            elements.for_each(|&element| is_in[element as usize] = true);
+            is_in.iter().all(|&is_in| is_in)
+        };
+        if !covers(&listed, true) {
+            listed.iter_mut().for_each(|set| set.used = false);
         }
+        let (mut tags, members) = if covers(&listed, false) {
+            by_region(listed, numbers.len(), 2)
+        } else {
+            let members = |set: Listed| Members { dimension: 2, tag: set.tag, of: set.elements };
+            (Vec::new(), listed.into_iter().map(members).collect())
+        };
+        mesh.members = members;
         if tags.iter().any(|tag| *tag != 0) {
             mesh.quad_tags = tags.split_off(triangles);
             mesh.triangle_tags = tags;
@@ -287,6 +297,11 @@ fn keyword_line(s: &Scanner, line: &[u8], sets: &mut Sets) -> Result<Section, Fa
             Some(name) => Section::Set(sets.sets.index(name), option("GENERATE").is_some()),
             None => Section::Other,
         }),
+        section if section.ends_with(" SECTION") => {
+            let set = option("ELSET").map(|name| sets.sets.index(name));
+            sets.regions.extend(set);
+            Ok(Section::Other)
+        }
         // The default type is ELEMENT.
         "SURFACE" => Ok(match (option("NAME"), option("TYPE")) {
             (Some(name), kind) if kind.is_none_or(|kind| kind.eq_ignore_ascii_case("ELEMENT")) => {

@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 
 use glam::DVec3;
-use rustc_hash::FxHashMap;
 
+use super::groups::{Grouping, group_tag};
 use super::input::Input;
 use super::{Shape, shape};
 use crate::core::fault::Fault;
@@ -15,9 +15,10 @@ use crate::core::soup::{Count, Group, MeshFile};
 
 /// Reads a mesh from the bytes of an MSH file; `name` is the file's name in messages.
 ///
-/// Points and elements are sorted by their tags in the file. The tag of an element is that of its first physical group,
-/// 0 without one. Node data named "metric" with nine components becomes the metric; data with one component is kept if
-/// it covers every node, or every triangle and quadrilateral.
+/// Points and elements are sorted by their tags in the file. The tag of an element is that of its physical group, 0
+/// without one; where it is in several, that of its region (`soup::groups`), and the others have it as a member. Points
+/// in physical groups are members of these. Node data named "metric" with nine components becomes the metric; data with
+/// one component is kept if it covers every node, or every triangle and quadrilateral.
 ///
 /// # Errors
 /// With the line: anything that is not MSH 2.x or 4.1, and parts of MSH that are not supported (elements of higher
@@ -29,7 +30,7 @@ pub fn read(name: &str, bytes: &[u8], pace: &dyn Pace) -> Result<MeshFile, Fault
         file: MeshFile::default(),
         nodes: None,
         has_elements: false,
-        physical: FxHashMap::default(),
+        grouping: Grouping::default(),
         numbers: Default::default(),
         elements: None,
         skipped: BTreeMap::new(),
@@ -68,8 +69,7 @@ pub(super) struct Reader<'a> {
     /// Node tags to indices, once the nodes are read.
     pub nodes: Option<Numbering>,
     has_elements: bool,
-    /// Version 4: the first physical group of an entity, by dimension and tag.
-    physical: FxHashMap<(i64, i64), u32>,
+    grouping: Grouping,
     /// Element tags of lines, triangles and quadrilaterals.
     pub numbers: [Vec<u64>; 3],
     /// Element tags to indices (triangles first), built on demand; the inner `None` means that tags are not unique.
@@ -201,12 +201,10 @@ impl Reader<'_> {
                     self.input.real("the box of an entity")?;
                 }
                 let groups = self.input.size("a number of physical tags")?;
-                for place in 0..self.input.fits(groups, 2, 4, "a number of physical tags")? {
+                for _ in 0..self.input.fits(groups, 2, 4, "a number of physical tags")? {
                     // The sign is the orientation of the entity in the group.
                     let group = self.input.int("a physical tag")?.unsigned_abs();
-                    if let (0, Ok(group)) = (place, u32::try_from(group)) {
-                        self.physical.insert((dimension, tag), group);
-                    }
+                    self.grouping.add((dimension, tag), group);
                 }
                 if dimension > 0 {
                     let bounds = self.input.size("a number of bounding entities")?;
@@ -331,7 +329,7 @@ impl Reader<'_> {
                 for _ in 0..blocks {
                     let dimension = self.input.int("the dimension of a block")?;
                     let entity = self.input.int("the entity of a block")?;
-                    let group = self.physical.get(&(dimension, entity)).copied().unwrap_or(0);
+                    let group = self.grouping.tag((dimension, entity));
                     let kind = self.input.int("an element type")?;
                     let count = self.input.size("a number of elements")?;
                     for _ in 0..self.input.fits(count, 4, 16, "a number of elements")? {
@@ -354,7 +352,8 @@ impl Reader<'_> {
         sort_by_number(quads, &mut file.quads, &mut file.quad_tags);
         file.counting.shared = true;
         (file.counting.triangles, file.counting.quads) = (Count::of(triangles), Count::of(quads));
-        file.clear_zero_tags();
+        std::mem::take(&mut self.grouping).assign(&mut self.file);
+        self.file.clear_zero_tags();
         self.has_elements = true;
         Ok(())
     }
@@ -370,7 +369,7 @@ impl Reader<'_> {
         for place in 0..self.input.fits(count, 2, 4, "a number of tags")? {
             let tag = self.input.int("a tag")?.unsigned_abs();
             if place == 0 {
-                group = u32::try_from(tag).unwrap_or(0);
+                group = group_tag(tag).unwrap_or(0);
             }
         }
         Ok(group)
@@ -382,7 +381,8 @@ impl Reader<'_> {
         };
         match shape {
             Shape::Point => {
-                self.corners::<1>()?;
+                let [point] = self.corners()?;
+                self.grouping.points.push((point, group));
             }
             Shape::Line => {
                 let corners = self.corners()?;

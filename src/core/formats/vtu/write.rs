@@ -78,6 +78,11 @@ fn point_data(out: &mut dyn Write, mesh: &MeshFile) -> io::Result<()> {
     if let Some(uv) = &mesh.uv {
         array(out, "Float64", UV, &["u", "v"], uv.iter().map(|p| p.to_array().map(Shortest)))?;
     }
+    for members in mesh.members.iter().filter(|members| members.dimension == 0) {
+        let is_in = (0..mesh.points.len() as u32).map(|k| [u8::from(members.of.binary_search(&k).is_ok())]);
+        let name = if members.tag == 0 { "required".to_owned() } else { mesh.named(0, members.tag).name };
+        array(out, "UInt8", &name, &[""], is_in)?;
+    }
     for Data { name, values } in &mesh.point_data {
         array(out, "Float64", name, &[""], values.iter().map(|value| [Shortest(*value)]))?;
     }
@@ -88,6 +93,20 @@ fn cell_data(out: &mut dyn Write, mesh: &MeshFile, lines: &[usize]) -> io::Resul
     let of_lines = lines.iter().map(|&i| tag_of(&mesh.line_tags, i));
     if !mesh.triangle_tags.is_empty() || !mesh.quad_tags.is_empty() || !lines.is_empty() {
         array(out, "Int64", TAG, &[""], mesh.faces().map(|face| face.1).chain(of_lines).map(|tag| [tag]))?;
+    }
+    let faces = mesh.triangles.len() + mesh.quads.len();
+    for members in mesh.members.iter().filter(|members| members.dimension > 0) {
+        let own = |of_lines: bool, k: usize| {
+            of_lines == (members.dimension == 1) && members.of.binary_search(&(k as u32)).is_ok()
+        };
+        let all = (0..faces).map(|k| own(false, k)).chain(lines.iter().map(|&k| own(true, k)));
+        array(
+            out,
+            "UInt8",
+            &mesh.named(members.dimension, members.tag).name,
+            &[""],
+            all.map(|is_in| [u8::from(is_in)]),
+        )?;
     }
     let beside = if mesh.element_data.is_empty() { Vec::new() } else { mesh.sides_at(lines) };
     for Data { name, values } in &mesh.element_data {

@@ -5,8 +5,8 @@ use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use glam::DVec3;
 
 use crate::core::kernel::DisjointSets;
-use crate::core::soup::MeshFile;
 use crate::core::soup::mesh_file::tag_of;
+use crate::core::soup::{Group, Members, MeshFile};
 
 /// The elements of a mesh: triangles, then quadrilaterals, then polygons.
 pub(super) struct Faces {
@@ -175,10 +175,29 @@ pub(super) fn subset(mesh: &MeshFile, keep: impl Fn(usize) -> bool) -> Option<Me
         metric: mesh.metric.as_ref().map(|metric| used.iter().map(|&i| metric[i]).collect()),
         ..MeshFile::default()
     };
-    let has = |group: &crate::core::soup::Group| match group.dimension {
-        1 => part.line_tags.contains(&group.tag),
-        2 => [&part.triangle_tags, &part.quad_tags, &part.polygon_tags].iter().any(|tags| tags.contains(&group.tag)),
-        _ => false,
+    // What is kept of the points, lines and elements, in the new order.
+    let elements: Vec<usize> = t
+        .into_iter()
+        .chain(q.into_iter().map(|i| triangles + i))
+        .chain(p.into_iter().map(|i| triangles + quads + i))
+        .collect();
+    for Members { dimension, tag, of } in &mesh.members {
+        let kept = [&used, &lines, &elements][usize::from((*dimension).min(2))];
+        let is_in = |old: &usize| of.binary_search(&(*old as u32)).is_ok();
+        let of: Vec<u32> = (0..).zip(kept).filter(|(_, old)| is_in(old)).map(|(new, _)| new).collect();
+        if !of.is_empty() {
+            part.members.push(Members { dimension: *dimension, tag: *tag, of });
+        }
+    }
+    let has = |group: &Group| {
+        part.members.iter().any(|members| (members.dimension, members.tag) == (group.dimension, group.tag))
+            || match group.dimension {
+                1 => part.line_tags.contains(&group.tag),
+                2 => [&part.triangle_tags, &part.quad_tags, &part.polygon_tags]
+                    .iter()
+                    .any(|tags| tags.contains(&group.tag)),
+                _ => false,
+            }
     };
     part.groups = mesh.groups.iter().filter(|group| has(group)).cloned().collect();
     Some(part)

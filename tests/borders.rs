@@ -1,0 +1,157 @@
+//! Borders, interfaces, groups and points of what is given are kept: odd interfaces are divided as rarely as possible,
+//! groups that overlap do not cut and are all written again.
+#![allow(clippy::unwrap_used)]
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use glam::DVec3;
+use quadfront::core::case::{Case, ImportOptions, MeshUse};
+use quadfront::core::convert::conversion::{Converted, convert};
+use quadfront::core::formats::format::{read_bytes, read_mesh, write_to};
+use quadfront::core::formats::{Format, WriteOptions};
+use quadfront::core::progress::Nobody;
+use quadfront::core::record::Export;
+use quadfront::core::soup::soundness::examine;
+use quadfront::core::soup::{Allow, Ignored, MeshFile};
+
+fn data(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data").join(name)
+}
+
+/// The quadrilaterals of a case, which are sound.
+fn converted(case: &Case) -> (Converted, MeshFile) {
+    let done = convert(case, &mut Nobody).unwrap();
+    let file = Export::of(&done.mesh, &done.names).file;
+    examine(&file).verdict(Allow::default()).unwrap();
+    assert!(file.triangles.is_empty());
+    (done, file)
+}
+
+fn converted_mesh(name: &str, options: &ImportOptions) -> (Converted, MeshFile) {
+    converted(&options.case(data(name), None).unwrap())
+}
+
+/// The area of an element in space.
+fn area(mesh: &MeshFile, corners: &[u32]) -> f64 {
+    let p: Vec<DVec3> = corners.iter().map(|&k| mesh.points[k as usize]).collect();
+    0.5 * (1..p.len() - 1).map(|k| (p[k] - p[0]).cross(p[k + 1] - p[0])).sum::<DVec3>().length()
+}
+
+/// The area of every group of elements, by region and by further membership.
+fn areas(mesh: &MeshFile) -> BTreeMap<String, f64> {
+    let mut found = BTreeMap::new();
+    let elements: Vec<(&[u32], u32)> = {
+        let tag = |tags: &[u32], i: usize| tags.get(i).copied().unwrap_or(0);
+        let triangles = mesh.triangles.iter().enumerate().map(|(i, t)| (&t[..], tag(&mesh.triangle_tags, i)));
+        triangles.chain(mesh.quads.iter().enumerate().map(|(i, q)| (&q[..], tag(&mesh.quad_tags, i)))).collect()
+    };
+    let name = |tag: u32| mesh.group_name(2, tag).unwrap_or("region 0").to_owned();
+    for (corners, tag) in &elements {
+        *found.entry(name(*tag)).or_insert(0.0) += area(mesh, corners);
+    }
+    for members in mesh.members.iter().filter(|members| members.dimension == 2) {
+        let own: f64 = members.of.iter().map(|&k| area(mesh, elements[k as usize].0)).sum();
+        *found.entry(name(members.tag)).or_insert(0.0) += own;
+    }
+    found
+}
+
+/// The mesh after it is written and read again.
+fn read_back(mesh: &MeshFile, format: Format) -> MeshFile {
+    let mut bytes = Vec::new();
+    write_to(&mut bytes, format, mesh, WriteOptions { msh2: false }).unwrap();
+    read_bytes("again", &bytes, format).unwrap()
+}
+
+fn near(a: &BTreeMap<String, f64>, b: &BTreeMap<String, f64>) -> bool {
+    a.len() == b.len() && a.iter().zip(b).all(|((m, x), (n, y))| m == n && (x - y).abs() < 1e-9 * x.abs().max(1.0))
+}
+
+#[test]
+fn an_odd_interface_in_the_plane_is_divided_as_in_space() {
+    for name in ["odd_interface_min.msh", "odd_interface_min_tilt.msh"] {
+        for split_odd in [false, true] {
+            let given = read_mesh(&data(name), None).unwrap();
+            // In the plane the triangles are converted by default.
+            let used = Some(MeshUse::Triangles);
+            let options = ImportOptions { used, split_odd, ..ImportOptions::default() };
+            let (done, quads) = converted_mesh(name, &options);
+            assert_eq!(done.repairs.len(), 1, "{:?}", done.repairs);
+            assert!(done.repairs[0].starts_with("1 side "), "{:?}", done.repairs);
+            let found = areas(&quads);
+            assert!(near(&found, &areas(&given)), "{name}: {found:?}");
+            assert_eq!(found.keys().collect::<Vec<_>>(), ["grain", "matrix"]);
+        }
+    }
+}
+
+#[test]
+fn a_set_of_abaqus_is_kept_as_a_set_and_can_be_ignored() {
+    // Three elements that lie apart: no border, which would be odd around each of them.
+    let given = read_mesh(&data("i_cps3.inp"), None).unwrap();
+    let (done, quads) = converted_mesh("i_cps3.inp", &ImportOptions::default());
+    assert_eq!(done.repairs, ["1 group was kept without a cut"]);
+    let [own, whole] = ["E1", "region 0"].map(|name| areas(&quads)[name]);
+    assert!(own > 0.0 && own < 8.0 * areas(&given)["E1"] && (whole - areas(&given)["region 0"]).abs() < 1e-9);
+    assert_eq!(areas(&read_back(&quads, Format::Inp))["E1"], own);
+    for ignore_groups in [Ignored::All, Ignored::Named(vec!["E1".to_owned()])] {
+        let (done, quads) = converted_mesh("i_cps3.inp", &ImportOptions { ignore_groups, ..ImportOptions::default() });
+        assert!(done.repairs.iter().all(|told| !told.contains("divided")), "{:?}", done.repairs);
+        assert!(quads.groups.iter().all(|group| group.name != "E1"));
+    }
+    let ignore_groups = Ignored::Named(vec!["E2".to_owned()]);
+    let case = ImportOptions { ignore_groups, ..ImportOptions::default() }.case(data("i_cps3.inp"), None).unwrap();
+    assert!(convert(&case, &mut Nobody).unwrap_err().to_string().contains("\"E1\""));
+}
+
+#[test]
+fn an_element_in_several_groups_keeps_all() {
+    let given = read_mesh(&data("multi_phys41.msh"), None).unwrap();
+    let expected = BTreeMap::from([("all".to_owned(), 3.0), ("right".to_owned(), 1.0)]);
+    assert!(near(&areas(&given), &expected), "{:?}", areas(&given));
+    for used in ["triangles", "shape"] {
+        let text = format!("version = 1\nmesh = \"multi_phys41.msh\"\nuse = \"{used}\"\n");
+        let case = Case::parse(&text, "a", "a.toml", data("").as_path()).unwrap();
+        let (_, quads) = converted(&case);
+        for mesh in [&quads, &read_back(&quads, Format::Msh), &read_back(&quads, Format::Inp)] {
+            assert!(near(&areas(mesh), &expected), "{used}: {:?}", areas(mesh));
+        }
+    }
+}
+
+#[test]
+fn a_set_that_overlaps_others_does_not_cut_the_mesh() {
+    // The sections make regions of LEFT and RIGHT; LOAD lies across both, and one element is in LEFT alone.
+    let mut text = "*NODE\n".to_owned();
+    let n = 9;
+    for k in 0..n * n {
+        text += &format!("{}, {}, {}\n", k + 1, k % n, k / n);
+    }
+    text += "*ELEMENT, TYPE=S3\n";
+    let mut left = Vec::new();
+    for k in 0..(n - 1) * (n - 1) {
+        let (i, j) = (k % (n - 1), k / (n - 1));
+        let a = j * n + i + 1;
+        text += &format!("{}, {a}, {}, {}\n", 2 * k + 1, a + 1, a + n + 1);
+        text += &format!("{}, {a}, {}, {}\n", 2 * k + 2, a + n + 1, a + n);
+        if i < 4 {
+            left.extend([2 * k + 1, 2 * k + 2]);
+        }
+    }
+    let list = |numbers: &[usize]| numbers.iter().map(|k| format!("{k},\n")).collect::<String>();
+    let right: Vec<usize> = (1..=2 * (n - 1) * (n - 1)).filter(|k| !left.contains(k)).collect();
+    text += &format!("*ELSET, ELSET=LEFT\n{}*ELSET, ELSET=RIGHT\n{}", list(&left), list(&right));
+    text += "*ELSET, ELSET=LOAD, GENERATE\n39, 89\n*SHELL SECTION, ELSET=LEFT\n1.\n*SHELL SECTION, ELSET=RIGHT\n1.\n";
+    let given = read_bytes("a.inp", text.as_bytes(), Format::Inp).unwrap();
+    let expected = [("LEFT", 32.0), ("LOAD", 25.5), ("RIGHT", 32.0)].map(|(name, area)| (name.to_owned(), area));
+    assert_eq!(areas(&given), BTreeMap::from(expected));
+    let (done, quads) = converted(&Case::of_mesh_in_memory("sets", given));
+    assert_eq!(done.repairs, ["1 group was kept without a cut"]);
+    // The grid comes back as it would without LOAD, whose quadrilaterals are those within it.
+    assert_eq!(quads.quads.len(), 64);
+    let found = areas(&quads);
+    assert_eq!((found["LEFT"], found["RIGHT"]), (32.0, 32.0));
+    assert!((found["LOAD"] - 25.5).abs() <= 1.0, "{found:?}");
+    assert!(near(&areas(&read_back(&quads, Format::Msh)), &found));
+}
