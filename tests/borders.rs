@@ -155,3 +155,124 @@ fn a_set_that_overlaps_others_does_not_cut_the_mesh() {
     assert!((found["LOAD"] - 25.5).abs() <= 1.0, "{found:?}");
     assert!(near(&areas(&read_back(&quads, Format::Msh)), &found));
 }
+
+/// The groups of points, each with the places of its points.
+fn points(mesh: &MeshFile) -> Vec<(String, Vec<DVec3>)> {
+    let name = |tag: u32| mesh.group_name(0, tag).unwrap_or("none").to_owned();
+    let of = |of: &[u32]| of.iter().map(|&k| mesh.points[k as usize]).collect();
+    mesh.members.iter().filter(|m| m.dimension == 0).map(|m| (name(m.tag), of(&m.of))).collect()
+}
+
+/// The corners of elements at a place.
+fn corners_at(mesh: &MeshFile, p: DVec3) -> usize {
+    mesh.quads.iter().flatten().filter(|&&k| mesh.points[k as usize] == p).count()
+}
+
+#[test]
+fn points_in_groups_become_nodes_exactly_and_keep_their_group() {
+    let place = DVec3::new(0.4, 0.8, 0.0);
+    for used in ["triangles", "shape"] {
+        for scale in ["", "[parameters]\nsize_scale = 0.5\n", "[[metric]]\nkind = \"uniform\"\nh = 0.3\n"] {
+            let text = format!("version = 1\nmesh = \"embedded.msh\"\nuse = \"{used}\"\n{scale}");
+            let (_, quads) = converted(&Case::parse(&text, "a", "a.toml", data("").as_path()).unwrap());
+            assert_eq!(points(&quads), [("sensor".to_owned(), vec![place])], "{used} {scale}");
+            assert!(corners_at(&quads, place) >= 3, "{used} {scale}");
+            assert_eq!(points(&read_back(&quads, Format::Msh)), points(&quads));
+            assert_eq!(points(&read_back(&quads, Format::Medit)), [("none".to_owned(), vec![place])]);
+        }
+    }
+    // The same point as a required vertex, and tilted out of the plane.
+    let mut given = read_mesh(&data("embedded.msh"), None).unwrap();
+    given = read_back(&given, Format::Medit);
+    assert_eq!(points(&given), [("none".to_owned(), vec![place])]);
+    given.points.iter_mut().for_each(|p| p.z = 0.3 * p.x + 0.1 * p.x * p.y);
+    let place = points(&given)[0].1[0];
+    for used in ["triangles", "shape"] {
+        let text = format!("version = 1\nmesh = \"a.mesh\"\nuse = \"{used}\"\n");
+        let folder = tempfile::tempdir().unwrap();
+        let mut file = std::fs::File::create(folder.path().join("a.mesh")).unwrap();
+        write_to(&mut file, Format::Medit, &given, WriteOptions { msh2: false }).unwrap();
+        let (_, quads) = converted(&Case::parse(&text, "a", "a.toml", folder.path()).unwrap());
+        assert_eq!(points(&quads), [("none".to_owned(), vec![place])], "{used}");
+        assert!(corners_at(&quads, place) >= 3, "{used}");
+    }
+}
+
+/// A plate with a hole and points.
+const PLATE: &str = r#"
+    version = 1
+    [[curve]]
+    name = "frame"
+    kind = "polyline"
+    points = [[0, 0], [2, 0], [2, 1], [0, 1]]
+    closed = true
+    [[curve]]
+    name = "hole"
+    kind = "circle"
+    centre = [0.6, 0.5]
+    radius = 0.2
+    [[face]]
+    name = "plate"
+    outer = ["frame"]
+    holes = [["hole"]]
+    [[metric]]
+    kind = "uniform"
+    h = 0.15
+"#;
+
+fn plate(more: &str) -> Case {
+    Case::parse(&format!("{PLATE}{more}"), "plate", "plate.toml", Path::new("")).unwrap()
+}
+
+#[test]
+fn points_of_a_case_become_nodes_inside_on_curves_and_at_corners() {
+    let (sin, cos) = libm::sincos(1.0);
+    let places = [(1.3, 0.37), (1.7, 0.0), (2.0, 1.0), (0.6 + 0.2 * cos, 0.5 + 0.2 * sin), (1.32, 0.72)];
+    let mut more = String::new();
+    for (k, (x, y)) in places.iter().enumerate() {
+        more += &format!("[[point]]\nname = \"p{k}\"\nat = [{x:?}, {y:?}]\n");
+    }
+    more += "size = 0.02\n";
+    let (_, quads) = converted(&plate(&more));
+    let found = points(&quads);
+    for (k, (x, y)) in places.iter().enumerate() {
+        let place = DVec3::new(*x, *y, 0.0);
+        assert_eq!(found[k], (format!("p{k}"), vec![place]));
+        assert!(corners_at(&quads, place) >= if *x == 2.0 { 1 } else { 2 }, "p{k}");
+    }
+    // The size asked for at the last one holds there, and grades away.
+    let around = |p: DVec3, r: f64| {
+        let sides = quads.quads.iter().flat_map(|q| (0..4).map(move |k| [q[k], q[(k + 1) % 4]]));
+        let ends = sides.map(|side| side.map(|k| quads.points[k as usize]));
+        let near: Vec<f64> = ends.filter(|[a, b]| a.midpoint(*b).distance(p) < r).map(|[a, b]| a.distance(b)).collect();
+        near.iter().sum::<f64>() / near.len() as f64
+    };
+    let last = DVec3::new(1.32, 0.72, 0.0);
+    assert!((0.012..0.04).contains(&around(last, 0.04)), "{}", around(last, 0.04));
+    assert!(around(DVec3::new(1.8, 0.2, 0.0), 0.2) > 0.08);
+    let told = |more: &str| convert(&plate(more), &mut Nobody).unwrap_err().to_string();
+    assert!(told("[[point]]\nname = \"in the hole\"\nat = [0.6, 0.5]\n").contains("\"in the hole\" lies outside"));
+    let parsed = |more: &str| Case::parse(&format!("{PLATE}{more}"), "plate", "plate.toml", Path::new(""));
+    assert!(parsed("[[point]]\nname = \"p\"\nat = [1, 0.5]\ngrowth = 1.3\n").unwrap_err().to_string().contains("size"));
+}
+
+/// Random places of points in a plate, most of them close together.
+#[test]
+fn any_number_of_points_gives_a_sound_mesh_with_all_of_them() {
+    let mut state = 1_u64;
+    let mut random = || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 33) as f64 / f64::from(1_u32 << 31)
+    };
+    for round in 0..24 {
+        let count = 1 + round % 9;
+        let spread = [1.0, 0.2, 0.05][round % 3];
+        let mut more = String::new();
+        for k in 0..count {
+            let (x, y) = (1.4 + spread * 0.5 * (random() - 0.5), 0.5 + spread * 0.9 * (random() - 0.5));
+            more += &format!("[[point]]\nname = \"p{k}\"\nat = [{x:?}, {y:?}]\n");
+        }
+        let (_, quads) = converted(&plate(&more));
+        assert_eq!(points(&quads).len(), count, "{more}");
+    }
+}

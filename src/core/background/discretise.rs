@@ -1,6 +1,8 @@
 //! Division of curves at equal metric arclength, with even loops (docs/algorithm.md, "Curves divided at equal metric
 //! length", "Even loops").
 
+mod hard;
+
 use glam::{DVec2, DVec3};
 
 use super::length::{Piece, give, measure, share_out};
@@ -28,6 +30,8 @@ pub struct DividedDomain {
     pub joined: Vec<u32>,
     /// On surfaces: the point in space of each node. Empty in the plane.
     pub xyz: Vec<DVec3>,
+    /// Nodes at hard points, each with the number of its point.
+    pub hard: Vec<(u32, u32)>,
 }
 
 /// The metric lengths of the curves and their numbers of segments.
@@ -59,7 +63,7 @@ impl<'a> Division<'a> {
                 division.pieces.push(Vec::new());
                 continue;
             }
-            let mut pieces = measure(&domain.images(curve.first), metric)?;
+            let mut pieces = measure(&domain.images(curve.first), metric, &hard::parameters(domain, curve.first))?;
             let length: f64 = curve.segments.map_or_else(|| pieces.iter().map(Piece::length).sum(), f64::from);
             total += length;
             if total > MOST_SEGMENTS {
@@ -352,6 +356,7 @@ impl<'a> Division<'a> {
             divided.chains.push(chain);
             divided.parameters.push([0.0].into_iter().chain(parameters.iter().copied()).chain([1.0]).collect());
         }
+        hard::place(self.domain, &mut divided);
         Ok(divided)
     }
 }

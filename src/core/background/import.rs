@@ -337,9 +337,21 @@ impl<'a> Import<'a> {
                 set.lines.push((ends.map(|node| set.point[node as usize]), group));
             }
         }
-        let origin = origin.into_iter().map(|n| self.origin[n as usize]).collect();
+        // Ascending: new nodes have the order of the given ones.
+        let origin_of = origin;
+        let origin = origin_of.iter().map(|&n| self.origin[n as usize]).collect();
         let faces = groups_by_place(self.given, &set.uv, &set.triangles, &self.element, &mut self.repairs);
-        let further = Further { lines: self.file.further_lines(), faces, ..Further::default() };
+        let (mut points, mut lost) = (Vec::new(), 0);
+        for (k, named) in self.file.hard_points() {
+            let nodes = origin_of.partition_point(|&own| own < k)..origin_of.partition_point(|&own| own <= k);
+            lost += usize::from(nodes.is_empty());
+            for node in nodes {
+                set.hard.push((node as u32, points.len() as u32));
+                points.push((named.clone(), set.point[node]));
+            }
+        }
+        Repair::PointOffCorners.report(lost, &mut self.repairs);
+        let further = Further { lines: self.file.further_lines(), faces, points };
         Imported { set, origin, regions: names, lines: self.groups, further, repairs: self.repairs }
     }
 }

@@ -73,15 +73,25 @@ impl Piece {
     }
 }
 
-/// The pieces of a curve between its corners, with one segment each; the curve is given by all its images in the plane
-/// (one, except on surfaces). The tables are bisected until the quadrature converges.
+/// The pieces of a curve between its corners and the parameters `besides`, ascending, with one segment each; the curve
+/// is given by all its images in the plane (one, except on surfaces). The tables are bisected until the quadrature
+/// converges.
 ///
 /// # Errors
 /// If the metric fails or the length overflows.
-pub fn measure(images: &[&DomainCurve], metric: &dyn MetricSource) -> Result<Vec<Piece>, Fault> {
+pub fn measure(images: &[&DomainCurve], metric: &dyn MetricSource, besides: &[f64]) -> Result<Vec<Piece>, Fault> {
     let curve = images[0];
-    let corners = curve.curve.corners();
-    let breaks = curve.curve.breaks();
+    let merged = |own: &[f64]| {
+        if besides.is_empty() {
+            return own.to_vec();
+        }
+        let mut all = [own, besides].concat();
+        all.sort_by(f64::total_cmp);
+        all.dedup();
+        all
+    };
+    let corners = merged(curve.curve.corners());
+    let breaks = merged(&curve.curve.breaks());
     // Start finely enough to miss no feature of the metric; a polyline of many pieces is already fine.
     let parts = (64 / (breaks.len() - 1)).clamp(2, 32);
     let mut pieces: Vec<Piece> = Vec::new();

@@ -11,7 +11,8 @@ use super::cut::{Cut, CutMesh, cut, sorted_sides};
 use super::discretise::{DividedDomain, Division};
 use crate::core::fault::Fault;
 use crate::core::geometry::crossing::crossing_of;
-use crate::core::geometry::{CurveId, CurveKind, Domain};
+use crate::core::geometry::curve::distance_to_segment;
+use crate::core::geometry::{CurveId, CurveKind, Domain, PointOn};
 use crate::core::kernel::decimal::point_text;
 use crate::core::kernel::predicates::{firm, positive};
 use crate::core::mesh::{PointId, TriangleSet};
@@ -124,6 +125,7 @@ fn triangles(domain: &Domain, divided: &DividedDomain) -> Result<(CutMesh, Vec<D
             region.push(f);
         }
     }
+    edges.lost(&kept)?;
     edges.turn_thin(&mut kept, &region);
     if let Some(t) = kept.iter().find(|t| !edges.is_firm(**t)) {
         return Err(edges.thin(t));
@@ -145,6 +147,10 @@ fn triangles(domain: &Domain, divided: &DividedDomain) -> Result<(CutMesh, Vec<D
         mesh.join_in_space(&divided.joined, &divided.xyz);
     }
     mesh.set.lines = edges.lines(&mesh);
+    if !divided.hard.is_empty() {
+        let number: FxHashMap<u32, u32> = divided.hard.iter().copied().collect();
+        mesh.set.hard = (0..).zip(&mesh.origin).filter_map(|(node, own)| Some((node, *number.get(own)?))).collect();
+    }
     Ok((mesh, folded))
 }
 
@@ -177,6 +183,7 @@ fn load(domain: &Domain, divided: &DividedDomain) -> Result<(Cdt, Vec<FixedVerte
         Ok(())
     };
     (0..domain.vertices.len() as u32).try_for_each(&mut insert)?;
+    points_inside(domain, divided).try_for_each(&mut insert)?;
     let longest = divided.chains.iter().map(Vec::len).max().unwrap_or(0);
     let mut step = longest.next_power_of_two();
     while step > 0 {
@@ -187,6 +194,12 @@ fn load(domain: &Domain, divided: &DividedDomain) -> Result<(Cdt, Vec<FixedVerte
         step /= 2;
     }
     Ok((cdt, handles))
+}
+
+/// The nodes of hard points inside faces.
+fn points_inside<'a>(domain: &'a Domain, divided: &'a DividedDomain) -> impl Iterator<Item = u32> + 'a {
+    let inside = |number: u32| domain.points[number as usize].on == PointOn::Face;
+    divided.hard.iter().filter(move |(_, number)| inside(*number)).map(|(node, _)| *node)
 }
 
 /// The edges of the divided curves.
@@ -332,6 +345,22 @@ impl<'a> Edges<'a> {
         );
         found.chords = self.all().map(|(chord, ..)| chord).collect();
         found
+    }
+
+    /// Hard points between a chord and its curve, or a chord through one: the nearest chord is too long.
+    fn lost(&self, triangles: &[[u32; 3]]) -> Result<(), Box<Clash>> {
+        let mut wanted: Vec<u32> = points_inside(self.domain, self.divided).collect();
+        if wanted.is_empty() {
+            return Ok(());
+        }
+        let used: FxHashSet<u32> = triangles.as_flattened().iter().copied().collect();
+        wanted.retain(|node| !used.contains(node));
+        let Some(&first) = wanted.first() else { return Ok(()) };
+        let off = |node: u32, [a, b]: [u32; 2]| distance_to_segment(self.at(node), self.at(a), self.at(b));
+        let nearest =
+            |node: u32| self.all().min_by(|(_, a, b), (_, c, d)| off(node, [*a, *b]).total_cmp(&off(node, [*c, *d])));
+        let chords = wanted.iter().filter_map(|&node| nearest(node)).map(|(chord, ..)| chord).collect();
+        Err(clash(self.domain, chords, "leaves a hard point outside when divided into segments", self.at(first)))
     }
 
     fn is_firm(&self, triangle: [u32; 3]) -> bool {

@@ -69,7 +69,8 @@ fn field(table: &Table<'_>, curves: &[&str]) -> Result<FieldSpec, Fault> {
     }
 }
 
-fn growth(table: &Table<'_>) -> Result<f64, Fault> {
+/// Reads the ratio of successive sizes.
+pub(super) fn growth(table: &Table<'_>) -> Result<f64, Fault> {
     let value = table.need("growth", "1.2")?;
     let growth = value.number()?;
     if (1.0..=10.0).contains(&growth) { Ok(growth) } else { Err(value.wrong("a growth from 1 to 10", "growth = 1.2")) }

@@ -9,6 +9,7 @@ mod geometry;
 mod surfaces;
 mod elements;
 mod metric;
+mod points;
 mod taking;
 mod import_options;
 pub mod built_in;
@@ -28,7 +29,7 @@ pub use taking::{MeshSource, MeshUse, Taking};
 
 use crate::core::fault::{Fault, FaultKind};
 use crate::core::formats::save::load;
-use crate::core::geometry::{ComplexSpec, CurveSpec, FaceSpec};
+use crate::core::geometry::{ComplexSpec, CurveSpec, FaceSpec, PointSpec};
 use crate::core::metric::FieldSpec;
 use crate::core::soup::{Ignored, MeshFile};
 
@@ -80,6 +81,8 @@ pub struct Case {
     pub parameters: Parameters,
     /// Source of the domain.
     pub domain: DomainSource,
+    /// Hard points: places in the plane that become nodes.
+    pub points: Vec<PointSpec>,
     /// Metric fields, intersected; empty only for a mesh, which then uses its own metric.
     pub fields: Vec<FieldSpec>,
     /// Bound of the metric's gradation (docs/algorithm.md, "Gradation"), greater than 1; `None`: not bounded.
@@ -147,6 +150,7 @@ impl Case {
             "surface",
             "curve",
             "face",
+            "point",
             "metric",
             "background",
             "mesh",
@@ -164,6 +168,12 @@ impl Case {
             DomainSource::Elements { .. } | DomainSource::Mesh { .. } => Vec::new(),
         };
         let fields = metric::fields(&table, &curves)?;
+        let points = points::points(&table)?;
+        if let (Some(value), false) = (table.get("point"), matches!(domain, DomainSource::Curves { .. })) {
+            return Err(value
+                .fault("[[point]] is for curves in the plane")
+                .remedy("In a mesh, the points in its groups are kept (docs/files.md)"));
+        }
         check_fields(&table, &domain, &fields)?;
         Ok(Case {
             name: name.to_owned(),
@@ -174,6 +184,7 @@ impl Case {
             split_odd: table.get("split_odd").map_or(Ok(false), |v| v.flag())?,
             ignore_groups: table.get("ignore_groups").map_or(Ok(Ignored::Nothing), |v| taking::ignored(&v))?,
             domain,
+            points,
             fields,
             text: text.to_owned(),
         })
@@ -210,6 +221,7 @@ impl Case {
             notes: String::new(),
             parameters: Parameters::default(),
             domain: DomainSource::Mesh { source, taking: Taking::default() },
+            points: Vec::new(),
             fields: Vec::new(),
             gradation: None,
             split_odd: false,

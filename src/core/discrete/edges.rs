@@ -25,6 +25,15 @@ pub struct Triangles {
     /// Edges on lines of the file, which are kept whatever the shape: ends, the smaller first, and index of the line;
     /// by ascending ends.
     pub lines: Vec<([u32; 2], u32)>,
+    /// Hard points: points that become nodes, ascending, each with its number.
+    pub hard: Vec<(u32, u32)>,
+}
+
+impl Triangles {
+    /// The number of a hard point.
+    pub fn hard_number(&self, point: u32) -> Option<u32> {
+        self.hard.binary_search_by_key(&point, |hard| hard.0).ok().map(|k| self.hard[k].1)
+    }
 }
 
 /// A side of a triangle: it begins at corner `corner % 3` of triangle `corner / 3`.

@@ -1,11 +1,14 @@
 //! Finds the edges of a repaired surface on the lines of its file.
 
+use std::collections::BTreeMap;
+
 use glam::DVec3;
 use rstar::RTree;
 use rstar::primitives::GeomWithData;
 
 use super::edges::{Edges, Triangles};
 use super::stitch::ON_SIDE;
+use crate::core::mesh::Named;
 
 /// The edges on line segments between points of the file, each once, sorted: ends, ascending, and index of its first
 /// line. Ends that were merged into other points or copied (`copied` has the originals) are replaced by these; a
@@ -35,6 +38,27 @@ pub fn on_edges(segments: &[([u32; 2], u32)], mesh: &Triangles, copied: &[u32]) 
     found.dedup_by_key(|edge| edge.0);
     (found, lost)
 }
+
+/// The points of a surface that replace points of the file, ascending, each with a number from 0; and for each number
+/// the groups of the file's points. Also returns the number of points that the surface does not have.
+pub fn on_points(points: &[(u32, Option<Named>)], mesh: &Triangles, copied: &[u32]) -> (Hard, PointGroups, usize) {
+    if points.is_empty() {
+        return (Vec::new(), Vec::new(), 0);
+    }
+    let (surface, mut lost) = (SurfacePoints::of(mesh, copied), 0);
+    let mut found: BTreeMap<u32, Vec<Option<Named>>> = BTreeMap::new();
+    for (point, named) in points {
+        let current = surface.current(*point);
+        lost += usize::from(current.is_empty());
+        current.into_iter().for_each(|own| found.entry(own).or_default().push(named.clone()));
+    }
+    (found.keys().copied().zip(0..).collect(), found.into_values().collect(), lost)
+}
+
+/// Points of a surface with their numbers.
+type Hard = Vec<(u32, u32)>;
+/// The groups of hard points, by number.
+pub type PointGroups = Vec<Vec<Option<Named>>>;
 
 /// Finds the points of a file on the surface.
 struct SurfacePoints<'a> {

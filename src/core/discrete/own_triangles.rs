@@ -76,6 +76,9 @@ impl Surface {
                     *known = set.xyz.len() as u32;
                     set.xyz.push(points[point as usize]);
                 }
+                if let Some(hard) = mesh.hard_number(point) {
+                    set.hard.push((set.uv.len() as u32, hard));
+                }
                 set.uv.push(uv);
                 set.point.push(PointId(*known));
             }

@@ -5,7 +5,7 @@ use std::collections::{BTreeSet, VecDeque};
 
 use super::defects::{LARGEST, crossed, far_from_origin, one_sided, overlapping, used_points};
 use super::edges::{Edges, Groups, Triangles};
-use super::lines::on_edges;
+use super::lines::{PointGroups, on_edges, on_points};
 use crate::core::fault::Fault;
 use crate::core::kernel::box_tree::extent;
 use crate::core::mesh::Named;
@@ -26,6 +26,8 @@ const STEPS: u64 = 8;
 pub struct Repaired {
     /// The triangles.
     pub mesh: Triangles,
+    /// The groups of its hard points, by number.
+    pub points: PointGroups,
     /// For each point of the mesh after those of the file, the point of which it is a copy.
     pub copied: Vec<u32>,
     /// The regions, by index.
@@ -74,6 +76,7 @@ pub fn repair(file: &MeshFile, watch: &mut dyn Watch) -> Result<Repaired, Fault>
         triangles: file.triangles,
         region,
         lines: Vec::new(),
+        hard: Vec::new(),
         texture,
         origin,
         elements: given.elements(),
@@ -111,7 +114,10 @@ pub fn repair(file: &MeshFile, watch: &mut dyn Watch) -> Result<Repaired, Fault>
     let lost;
     (mesh.lines, lost) = on_edges(&segments, &mesh, &copied);
     Repair::LineOffEdges.report(lost, &mut repairs);
-    Ok(Repaired { mesh, regions, lines, copied, repairs })
+    let (hard, points, lost) = on_points(&given.hard_points(), &mesh, &copied);
+    mesh.hard = hard;
+    Repair::PointOffCorners.report(lost, &mut repairs);
+    Ok(Repaired { mesh, regions, lines, points, copied, repairs })
 }
 
 /// The unrepaired triangles of a file, for display when it is rejected; without those that cannot be drawn.

@@ -15,7 +15,9 @@ use super::planar_map::StretchBound;
 use crate::core::fault::Fault;
 use crate::core::geometry::complex::{Lifted, assemble};
 use crate::core::geometry::lifting::Piece;
-use crate::core::geometry::{Domain, FaceSpec, FaceSurface, Facets, Image, NamedCurve, SpaceCurve};
+use crate::core::geometry::{
+    Domain, DomainPoint, FaceSpec, FaceSurface, Facets, Image, NamedCurve, PointOn, SpaceCurve,
+};
 use crate::core::kernel::Metric3;
 use crate::core::kernel::box_tree::extent;
 use crate::core::mesh::{GroupsByPlace, names};
@@ -126,7 +128,8 @@ pub fn surface(
         });
         lifts.push(Lifted { surface: FaceSurface::Facets(facets), loops, cracks: Vec::new(), repeated: Vec::new() });
     }
-    let domain = assemble(&curves, &vertices, &specs, lifts)?;
+    let mut domain = assemble(&curves, &vertices, &specs, lifts)?;
+    domain.points = hard_points(mesh, &charts, &vertex_of, &domain);
     let region = |chart: &Chart| regions[mesh.region[chart.triangles[0] as usize] as usize].clone();
     let regions = charts.iter().map(region).collect();
     let by_name: FxHashMap<&str, Option<u32>> =
@@ -220,6 +223,25 @@ pub fn implied_sizes(mesh: &Triangles) -> Vec<Metric3> {
     sizes
 }
 
+/// The hard points of a surface: those on borders of charts have become vertices.
+fn hard_points(mesh: &Triangles, charts: &[Chart], vertex_of: &[u32], domain: &Domain) -> Vec<DomainPoint> {
+    let Some(spatial) = domain.spatial.as_deref().filter(|_| !mesh.hard.is_empty()) else { return Vec::new() };
+    let mut inside: FxHashMap<u32, DVec2> = FxHashMap::default();
+    for (k, chart) in charts.iter().enumerate() {
+        let places = chart.points.iter().zip(&chart.uv);
+        inside.extend(places.map(|(&point, &uv)| (point, uv + spatial.atlas.offset(k))));
+    }
+    let images = |vertex: u32| (0..).zip(&spatial.vertex_of).filter(move |(_, own)| **own == vertex).map(|(v, _)| v);
+    let place = |&(point, _): &(u32, u32)| {
+        let on = match vertex_of[point as usize] {
+            u32::MAX => PointOn::Face,
+            vertex => PointOn::Vertices(images(vertex).collect()),
+        };
+        DomainPoint { uv: inside.get(&point).copied().unwrap_or_default(), xyz: mesh.points[point as usize], on }
+    };
+    mesh.hard.iter().map(place).collect()
+}
+
 /// The sides of a chart's border, loop by loop, each with its first local node.
 pub(super) fn sides(chart: &Chart) -> impl Iterator<Item = Vec<[u32; 2]>> + '_ {
     let mut first = 0;
@@ -259,7 +281,8 @@ fn chains(
         let charts = |edge: u32| of_edge[edge as usize].iter().map(|user| user.1);
         kind(a as usize) == kind(b as usize) && charts(a).eq(charts(b))
     };
-    let goes_on = |point: u32| matches!(at_point[point as usize][..], [a, b] if alike(a, b));
+    let goes_on =
+        |point: u32| mesh.hard_number(point).is_none() && matches!(at_point[point as usize][..], [a, b] if alike(a, b));
     let mut chains = Vec::new();
     let mut links: Vec<Option<Link>> = vec![None; edges.len()];
     let mut walk = |first: u32, edge: u32, links: &mut Vec<Option<Link>>| {

@@ -61,7 +61,7 @@ impl Mesh {
     /// Whether a node lies on the front (or on the boundary).
     #[inline]
     pub fn is_on_front(&self, node: NodeId) -> bool {
-        self.is_fixed(node) || self.elements_at(node).any(|e| !self.is_triangle(e))
+        self.is_on_boundary(node) || self.elements_at(node).any(|e| !self.is_triangle(e))
     }
 
     /// Whether the elements around a node are all quadrilaterals.

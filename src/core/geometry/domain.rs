@@ -10,6 +10,7 @@ use super::assembly::{join_ends, loop_name, placed, resolve};
 use super::atlas::Atlas;
 use super::crossing::{self, Limits};
 use super::domain_curve::{CurveId, CurveKind, DirectedCurve, DomainCurve};
+use super::domain_point::DomainPoint;
 use super::inside::{self, Chord};
 use super::loops;
 use super::space_curve::SpaceCurve;
@@ -73,6 +74,8 @@ pub struct Domain {
     pub vertices: Vec<DVec2>,
     /// The faces, in the order of the case.
     pub faces: Vec<DomainFace>,
+    /// The hard points.
+    pub points: Vec<DomainPoint>,
     /// Larger side of the bounding box.
     pub size: f64,
     /// The geometry in space, if the faces lie on surfaces.
@@ -151,7 +154,17 @@ impl Domain {
                 }
             }
         }
-        let mut domain = Domain { curves, vertices, faces: Vec::new(), size, spatial: None, lower, upper, chords };
+        let mut domain = Domain {
+            curves,
+            vertices,
+            faces: Vec::new(),
+            points: Vec::new(),
+            size,
+            spatial: None,
+            lower,
+            upper,
+            chords,
+        };
         domain.faces = names
             .iter()
             .zip(chains)

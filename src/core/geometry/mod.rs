@@ -16,11 +16,13 @@ mod atlas;
 mod image;
 mod course;
 mod domain_curve;
+mod domain_point;
 pub mod loops;
 mod inside;
 pub(crate) mod crossing;
 pub(crate) mod assembly;
 mod domain;
+mod hard;
 mod named_curve;
 pub mod lifting;
 mod whole_surface;
@@ -31,6 +33,7 @@ pub use chart::{Chart, ChartPoint};
 pub use course::Course;
 pub use domain::{Domain, DomainFace, Line, Spatial};
 pub use domain_curve::{CurveId, CurveKind, DirectedCurve, DomainCurve};
+pub use domain_point::{DomainPoint, PointOn};
 pub use face_surface::FaceSurface;
 pub use facets::Facets;
 pub use frame::AxisFrame;
@@ -39,7 +42,7 @@ pub(in crate::core) use named_curve::NamedCurve;
 pub use nurbs::{Basis, NurbsCurve, Vector};
 pub use space_curve::SpaceCurve;
 pub use spec::{
-    ComplexSpec, CurveShape, CurveSpec, FaceSpec, SpaceCurveSpec, SpaceShape, SurfaceFaceSpec, SurfaceShape,
+    ComplexSpec, CurveShape, CurveSpec, FaceSpec, PointSpec, SpaceCurveSpec, SpaceShape, SurfaceFaceSpec, SurfaceShape,
     SurfaceSpec,
 };
 pub use surface::{Bend, Edge, NurbsSurface, SurfacePoint};

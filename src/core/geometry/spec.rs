@@ -45,6 +45,21 @@ pub enum CurveShape {
     },
 }
 
+/// A hard point of a case: a place in the plane that becomes a node.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PointSpec {
+    /// Its name, that of its group.
+    pub name: String,
+    /// Where it is.
+    pub at: DVec2,
+    /// The size of elements there, if it is given.
+    pub size: Option<f64>,
+    /// The ratio of successive sizes away from it, at least 1.
+    pub growth: f64,
+    /// Its place in the case, for messages.
+    pub place: String,
+}
+
 /// A named curve of a case.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CurveSpec<Shape = CurveShape> {

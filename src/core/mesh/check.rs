@@ -81,7 +81,7 @@ impl Mesh {
         }
         for h in self.half_edges(e) {
             let Some(t) = self.twin(h) else {
-                let ends_fixed = self.is_fixed(self.origin(h)) && self.is_fixed(self.target(h));
+                let ends_fixed = self.is_on_boundary(self.origin(h)) && self.is_on_boundary(self.target(h));
                 ensure!(ends_fixed, "{h:?} of {e:?} has no twin, but its ends are not fixed");
                 continue;
             };
@@ -114,8 +114,8 @@ impl Mesh {
         let sees_all = seen <= most && sides_at.is_none_or(|sides_at| seen == sides_at);
         ensure!(sees_all, "the fan of {node:?} sees {seen} of {most} elements");
         let start = self.fan(node).next().and_then(|h| self.twin(h));
-        let fixed = self.is_fixed(node);
-        ensure!(fixed == start.is_none(), "{node:?} is fixed exactly where it lies on a boundary: {fixed}");
+        let fixed = self.is_on_boundary(node);
+        ensure!(fixed == start.is_none(), "{node:?} has a boundary exactly where it is fixed on it: {fixed}");
         let (uv, metric) = (self.uv(node), self.metric(node));
         ensure!(metric.is_spd() && uv.is_finite(), "{node:?} at {uv} has metric {metric:?}");
         Ok(())

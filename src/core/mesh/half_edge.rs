@@ -11,6 +11,7 @@
 mod copies;
 mod difference;
 mod faces;
+mod fixed;
 mod embedding;
 mod setters;
 mod slots;
@@ -27,7 +28,7 @@ use std::sync::Arc;
 
 use glam::DVec2;
 
-use super::ids::{ElementId, HalfEdgeId, NodeId, PointId};
+use super::ids::{ElementId, HalfEdgeId, NodeId};
 use super::refusals::Refusals;
 use super::triangle_set::TriangleSet;
 use crate::core::kernel::Metric2;
@@ -42,7 +43,7 @@ pub struct Mesh {
     places: Vec<Place>,
     /// The half-edge at which the fan of a node starts; `NONE` for a tombstone.
     anchor: Vec<u32>,
-    /// The output point of a fixed node; `NONE` for a free one.
+    /// The output point of a fixed node, with [`fixed::HARD`] inside; `NONE` for a free one.
     point: Vec<u32>,
     origin: Vec<u32>,
     twin: Vec<u32>,
@@ -121,7 +122,7 @@ impl Iterator for Fan<'_> {
 }
 
 impl Mesh {
-    /// The mesh of a set of triangles, with the metric of each node. Nodes on a boundary become fixed.
+    /// The mesh of a set of triangles, with the metric of each node. Nodes on a boundary and hard points become fixed.
     ///
     /// # Panics
     /// If the set is invalid (a side is used twice in one direction, a node has two fans).
@@ -168,6 +169,12 @@ impl Mesh {
                 mesh.anchor[node] = h;
                 mesh.point[node] = set.point[node].0;
                 rest = tail;
+            }
+        }
+        for &(node, _) in &set.hard {
+            let point = &mut mesh.point[node as usize];
+            if *point == NONE {
+                *point = set.point[node as usize].0 | fixed::HARD;
             }
         }
         mesh
@@ -454,24 +461,12 @@ impl Mesh {
         let Place { uv, metric } = &self.places[node.index()];
         (*uv, metric)
     }
-
-    /// Whether the node lies on a boundary: it must not be moved or removed.
-    #[inline]
-    pub fn is_fixed(&self, node: NodeId) -> bool {
-        self.point[node.index()] != NONE
-    }
-
-    /// The output point of a node on a boundary.
-    #[inline]
-    pub fn point(&self, node: NodeId) -> Option<PointId> {
-        let p = self.point[node.index()];
-        (p != NONE).then_some(PointId(p))
-    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::core::mesh::ids::PointId;
     use crate::core::mesh::journal::Mark;
 
     #[test]

@@ -17,7 +17,7 @@ use crate::core::kernel::Metric2;
 impl Mesh {
     /// Whether the node has more edges than the minimum: three inside, two on a boundary.
     fn can_lose_an_edge(&self, node: NodeId) -> bool {
-        self.valence(node) > if self.is_fixed(node) { 2 } else { 3 }
+        self.valence(node) > if self.is_on_boundary(node) { 2 } else { 3 }
     }
 
     /// Merges the corner a of a quadrilateral into the opposite corner c and removes the quadrilateral.
@@ -128,7 +128,7 @@ impl Mesh {
         }
         let kept = self.fan(v).count() - handed.len();
         // An inner node of n elements has n edges, and the new quadrilateral adds one.
-        Refusal::Valence.when(p == q || handed.len() < 2 || (!self.is_fixed(v) && kept < 2))?;
+        Refusal::Valence.when(p == q || handed.len() < 2 || (!self.is_on_boundary(v) && kept < 2))?;
         self.permit(Operation::OpenVertex, &[v, p, q])?;
         let region = self.region(h_vp.element());
         let w = self.add_node(uv, metric);

@@ -18,6 +18,8 @@ pub struct TriangleSet {
     pub triangles: Vec<[u32; 3]>,
     /// The face (region) of each triangle.
     pub region: Vec<u32>,
+    /// Nodes at hard points, which are kept where they are, each with the number of its point.
+    pub hard: Vec<(u32, u32)>,
     /// On surfaces: the coordinates of each point in space. Empty in the plane.
     pub xyz: Vec<DVec3>,
     /// Sides along numbered lines (curves of a domain, groups of lines of a file): the end points and the number of the

@@ -50,7 +50,8 @@ pub fn background(case: &Case, watch: &mut dyn Watch) -> Result<Background, Faul
     let whole = |domain| from_domain(case, domain, None, FileLines::default(), watch);
     let (made, kind) = match &case.domain {
         DomainSource::Curves { curves, faces } => {
-            (Domain::build(curves.clone(), faces.clone()).and_then(whole), FaultKind::Geometry)
+            let domain = Domain::build(curves.clone(), faces.clone());
+            (domain.and_then(|domain| domain.with_points(&case.points)).and_then(whole), FaultKind::Geometry)
         }
         DomainSource::Surfaces(spec) => (complex::build(spec).and_then(whole), FaultKind::Geometry),
         DomainSource::Elements { points, triangles, quads } => {

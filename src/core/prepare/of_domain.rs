@@ -2,21 +2,28 @@
 
 use std::sync::Arc;
 
+use glam::DVec2;
+
 use super::graded::bounded;
 use super::{Background, layers};
 use crate::core::background::adapt::adapt;
 use crate::core::background::triangulate::divide_and_triangulate;
 use crate::core::background::{Adapted, DividedDomain};
 use crate::core::case::Case;
+use crate::core::discrete::lines::PointGroups;
 use crate::core::fault::{Fault, FaultKind};
-use crate::core::geometry::Domain;
+use crate::core::geometry::{Domain, Line, PointSpec};
 use crate::core::mesh::{Embedding, Mesh, Named, Names, PointId, TriangleSet};
 use crate::core::metric::measure::triangle_area;
-use crate::core::metric::{Field, MetricSource, Sizing};
+use crate::core::metric::{Field, FieldSpec, MetricSource, Sizing};
 use crate::core::progress::{Stage, Watch};
 
 /// Number of points at which the metric is checked first.
 const SURVEYED: usize = 20_000;
+/// Beyond this multiple of the domain, a size at a hard point limits nothing.
+const FAR: f64 = 10.0;
+/// The length of a hard point as a curve for fields by distance, as a fraction of the domain.
+const SHORT: f64 = 1e-6;
 
 /// The background mesh of a domain of curves, in the plane or on surfaces. If the case bounds the gradation, a first
 /// mesh carries the table of the bounded metric for the second. `own` replaces the fields of the case.
@@ -30,10 +37,13 @@ pub(super) fn from_domain(
     watch.tell(Stage::Divide, 0, 0);
     let atlas = domain.spatial.as_ref().map(|spatial| Arc::clone(&spatial.atlas));
     let compile = |spec| Field::compile(spec, &|name| domain.curve_polyline(name));
-    let fields = match own {
+    let mut fields = match own {
         Some(own) => own,
         None => case.fields.iter().map(compile).collect::<Result<_, _>>()?,
     };
+    for point in &case.points {
+        fields.extend(size_at(point, domain.size)?);
+    }
     let mut sizing = Sizing::new(fields, case.parameters.size_scale).on(atlas.clone());
     sizing.survey(&domain.sample_points(SURVEYED), &|p| domain.inside(p).is_some())?;
     let layered =
@@ -50,17 +60,29 @@ pub(super) fn from_domain(
     // Only curves on lines of a file name lines of the output.
     let on_line = |&(ends, curve): &([PointId; 2], u32)| Some((ends, lines.of_curve.get(curve as usize).copied()??));
     let sides = made.lines.iter().filter_map(on_line).collect();
-    let names = Names::of_faces(faces).with_lines(lines.names, sides);
+    let mut names = Names::of_faces(faces).with_lines(lines.names, sides);
+    let own = case.points.iter().map(|point| vec![Some(Named::new(&point.name))]);
+    names.further.points = named_points(&lines.points.unwrap_or_else(|| own.collect()), &made.hard);
     Ok(Background { mesh: made.mesh, sizing, names, adapted: made.adapted, repairs: Vec::new() })
 }
 
-/// The lines of the file of a domain.
+/// The lines and hard points of the file of a domain.
 #[derive(Default)]
 pub(super) struct FileLines {
     /// Their names, by index.
     pub names: Vec<Named>,
     /// The line on which each curve of the domain lies, if any.
     pub of_curve: Vec<Option<u32>>,
+    /// The groups of its hard points, by number; `None` in a case without a file.
+    pub points: Option<PointGroups>,
+}
+
+/// The groups of hard points, which have these numbers.
+pub(super) fn named_points(groups: &PointGroups, hard: &[(u32, PointId)]) -> Vec<(Option<Named>, PointId)> {
+    let mut hard = hard.to_vec();
+    hard.sort_unstable();
+    let of = |number: u32| groups.get(number as usize).into_iter().flatten();
+    hard.into_iter().flat_map(|(number, point)| of(number).map(move |named| (named.clone(), point))).collect()
 }
 
 /// The background mesh of a domain.
@@ -70,6 +92,19 @@ struct AdaptedMesh {
     divided: DividedDomain,
     /// The sides along curves, by points and curve.
     lines: Vec<([PointId; 2], u32)>,
+    /// The hard points, by number.
+    hard: Vec<(u32, PointId)>,
+}
+
+/// The field of the size that a hard point asks for.
+fn size_at(point: &PointSpec, extent: f64) -> Result<Option<Field>, Fault> {
+    let Some(first) = point.size else { return Ok(None) };
+    let curves = vec![point.name.clone()];
+    let far = first.max(FAR * extent);
+    let spec = FieldSpec::Distance { curves, first, growth: point.growth, far, place: point.place.clone() };
+    // A curve so short that it is a point.
+    let line = Line::Plane(vec![point.at, point.at + DVec2::X * (SHORT * extent)]);
+    Field::compile(&spec, &|_| Some(line.clone())).map(Some)
 }
 
 fn adapted_mesh(case: &Case, domain: &Domain, sizing: &Sizing, watch: &mut dyn Watch) -> Result<AdaptedMesh, Fault> {
@@ -81,12 +116,13 @@ fn adapted_mesh(case: &Case, domain: &Domain, sizing: &Sizing, watch: &mut dyn W
     // A unit mesh has about 2.3 triangles for each quadrilateral that the metric asks for (docs/algorithm.md,
     // "Adaptation to the metric").
     let most = usize::try_from(case.parameters.max_quads.saturating_mul(3)).unwrap_or(usize::MAX);
+    let hard = set.hard.iter().map(|&(node, number)| (number, set.point[node as usize])).collect();
     let mut mesh = Mesh::from_triangles(&set, metric);
     if let Some(spatial) = &domain.spatial {
         mesh.set_embedding(Arc::new(Embedding { atlas: Arc::clone(&spatial.atlas), points: set.xyz }));
     }
     let (mesh, adapted) = adapt(mesh, sizing, most, watch)?;
-    Ok(AdaptedMesh { mesh, adapted, divided, lines: set.lines })
+    Ok(AdaptedMesh { mesh, adapted, divided, lines: set.lines, hard })
 }
 
 /// Refuses sizes that ask for far more quadrilaterals than are allowed before any memory is spent on them. The count is

@@ -6,7 +6,7 @@ use glam::DVec2;
 
 use super::Background;
 use super::graded::bounded;
-use super::of_domain::{FileLines, from_domain};
+use super::of_domain::{FileLines, from_domain, named_points};
 use crate::core::background::Adapted;
 use crate::core::background::implied_metric::implied_metric;
 use crate::core::background::import::import;
@@ -93,7 +93,7 @@ fn from_surface(
 ) -> Result<Background, Fault> {
     // Faults of the case's fields have their own place.
     let here = |fault: Fault| if fault.is_stop() { fault } else { fault.at(place) };
-    let Repaired { mesh, copied, regions, lines, mut repairs } = repair(file, watch).map_err(here)?;
+    let Repaired { mesh, copied, regions, lines, points, mut repairs } = repair(file, watch).map_err(here)?;
     let surface = surface(&mesh, &regions, taking.feature_angle, taking.bound(), watch).map_err(here)?;
     let converts = taking.used == Some(MeshUse::Triangles);
     let mut fields = Vec::new();
@@ -118,7 +118,7 @@ fn from_surface(
     }
     let faces = surface.regions.clone();
     let further = surface.groups_by_place(file, &mesh, &mut repairs);
-    let lines = FileLines { names: lines, of_curve: surface.lines.clone() };
+    let lines = FileLines { names: lines, of_curve: surface.lines.clone(), points: Some(points) };
     let made = if converts {
         from_own_triangles(case, &mesh, &surface, fields, lines, &mut repairs)
     } else {
@@ -159,6 +159,8 @@ fn from_own_triangles(
         sizing = Sizing::new(vec![bounded(&mesh, &sizing, beta)?], 1.0).on(atlas);
         mesh = meshed(&sizing)?;
     }
-    let names = Names::default().with_lines(lines.names, set.lines);
+    let hard: Vec<_> = set.hard.iter().map(|&(node, number)| (number, set.point[node as usize])).collect();
+    let mut names = Names::default().with_lines(lines.names, set.lines);
+    names.further.points = named_points(&lines.points.unwrap_or_default(), &hard);
     Ok(Background { mesh, sizing, names, adapted: Adapted::default(), repairs: Vec::new() })
 }

@@ -31,6 +31,7 @@ pub(super) fn reduce(search: &mut Search<'_>) -> Result<(), Fault> {
     edits::reduce(search)?;
     reduce_list(search, "face")?;
     within_faces(search)?;
+    reduce_list(search, "point")?;
     reduce_list(search, "metric")?;
     options(search)?;
     parameters(search)

@@ -109,6 +109,9 @@ pub struct NodeFacts {
     pub metric: MetricFacts,
     /// Whether it is fixed, as all nodes on the boundary are.
     pub is_fixed: bool,
+    /// Whether it is a hard point, fixed inside.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub is_hard: bool,
     /// Live triangles around it, anticlockwise.
     pub live: Vec<ElementId>,
     /// Dead quadrilaterals around it, anticlockwise.
@@ -134,6 +137,7 @@ impl NodeFacts {
             xyz: mesh.xyz(node).to_array(),
             metric: MetricFacts::of(mesh, node),
             is_fixed: mesh.is_fixed(node),
+            is_hard: mesh.is_hard(node),
             live,
             dead,
             valence: mesh.valence(node),

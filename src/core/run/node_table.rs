@@ -71,11 +71,11 @@ impl NodeRow {
             return None;
         }
         let uv = mesh.uv(node);
-        let is_fixed = mesh.is_fixed(node);
+        let is_on_boundary = mesh.is_on_boundary(node);
         // A boundary node that the front passes has its front segment as the first or the last edge of its fan.
         let mut arriving = mesh.fan(node).map(|h| mesh.previous(h));
         let is_on_front = mesh.fan(node).any(|h| mesh.is_front(h)) || arriving.any(|h| mesh.is_front(h));
-        let place = match (is_on_front, is_fixed) {
+        let place = match (is_on_front, is_on_boundary) {
             (true, _) => NodePlace::Front,
             (false, true) => NodePlace::Boundary,
             (false, false) => NodePlace::Inside,
@@ -85,7 +85,7 @@ impl NodeRow {
             xyz: mesh.xyz(node).to_array(),
             uv: [uv.x, uv.y],
             valence: mesh.valence(node) as u32,
-            is_irregular: (!is_fixed).then(|| !mesh.is_regular(node)),
+            is_irregular: (!is_on_boundary).then(|| !mesh.is_regular(node)),
             place,
             face: mesh.elements_at(node).next().map_or(0, |e| mesh.region(e) + 1),
             steps,

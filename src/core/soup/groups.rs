@@ -134,6 +134,13 @@ impl MeshFile {
         }
     }
 
+    /// The points that are kept, each with its group, if it is in one; a point of several groups is listed for each.
+    pub(in crate::core) fn hard_points(&self) -> Vec<(u32, Option<Named>)> {
+        let points = self.members.iter().filter(|members| members.dimension == 0);
+        let named = |tag: u32| (tag != 0).then(|| self.named(0, tag));
+        points.flat_map(|members| members.of.iter().map(move |&k| (k, named(members.tag)))).collect()
+    }
+
     /// Dimension, tag and name of every group: also of those that the file gives no name.
     fn named_groups(&self) -> Vec<(u8, u32, String)> {
         let faces = [&self.triangle_tags, &self.quad_tags, &self.polygon_tags].into_iter().flatten();

@@ -179,7 +179,8 @@ fn load(path: &Path, voice: &mut Voice) -> Result<Loaded, Fault> {
             if mesh.triangles.is_empty() {
                 return Err(place(fault));
             }
-            let nothing = Repaired { mesh, copied: vec![], regions: vec![], lines: vec![], repairs: vec![] };
+            let nothing =
+                Repaired { mesh, copied: vec![], regions: vec![], lines: vec![], points: vec![], repairs: vec![] };
             (nothing, Some(fault))
         }
     };

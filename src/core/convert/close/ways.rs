@@ -102,6 +102,9 @@ fn try_way(
 ) -> Option<f64> {
     let region = mesh.region(component.triangles[0]);
     let inside = inner_nodes(mesh, &component.triangles, ring);
+    if inside.iter().any(|&n| mesh.is_fixed(n)) {
+        return None;
+    }
     let new: SmallVec<[NewElement; 4]> = way.quads.iter().map(|&q| NewElement::quad(q, region)).collect();
     // A chord that is an edge already, outside of the loop, would be there twice.
     for quad in &way.quads {

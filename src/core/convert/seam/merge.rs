@@ -19,7 +19,7 @@ pub fn merge(
     }
     // The nodes opposite to the edge lose one edge each: fewer than three (on a boundary, two) would be a doublet.
     for opposite in [h_bc, h_cb].map(|h| front.mesh.apex(h)) {
-        if front.mesh.valence(opposite) < if front.mesh.is_fixed(opposite) { 3 } else { 4 } {
+        if front.mesh.valence(opposite) < if front.mesh.is_on_boundary(opposite) { 3 } else { 4 } {
             return Err(Unmerged::Doublet);
         }
     }

@@ -119,7 +119,7 @@ fn seam(front: &mut Front<'_>, a: NodeId, b: NodeId, c: NodeId) -> Result<[NodeI
         return Err(Unmerged::BothFixed);
     }
     // A keeps at least three edges (or two on a boundary): else it would be a doublet.
-    if mesh.valence(a) < if mesh.is_fixed(a) { 3 } else { 4 } {
+    if mesh.valence(a) < if mesh.is_on_boundary(a) { 3 } else { 4 } {
         return Err(Unmerged::Doublet);
     }
     // The edge B-C (fig. 18b).

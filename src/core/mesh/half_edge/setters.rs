@@ -89,11 +89,11 @@ impl Mesh {
         self.journal.note(Entry::Anchor(node, old));
     }
 
-    /// Starts the fan of a free node at a half-edge that leaves it; a fixed node keeps its boundary half-edge.
+    /// Starts the fan of a node inside at a half-edge that leaves it; one on a boundary keeps its boundary half-edge.
     #[inline]
     pub(in crate::core::mesh) fn reanchor(&mut self, h: HalfEdgeId) {
         let node = self.origin(h);
-        if !self.is_fixed(node) {
+        if !self.is_on_boundary(node) {
             self.set_anchor(node, h);
         }
     }

@@ -28,15 +28,15 @@ pub type Ranked = (i32, Candidate);
 /// The number of elements that fits each node.
 #[derive(Clone, Debug)]
 pub struct Valences {
-    /// For fixed nodes, by id; free ones want four.
+    /// For nodes on boundaries, by id; others want four.
     ideal: Vec<u8>,
 }
 
 impl Valences {
-    /// Elements that fit the angle of the domain at each fixed node: round(theta / 90 degrees).
+    /// Elements that fit the angle of the domain at each node on a boundary: round(theta / 90 degrees).
     pub fn of(mesh: &Mesh) -> Valences {
         let mut ideal = vec![4; mesh.node_slots()];
-        for node in mesh.nodes().filter(|&n| mesh.is_fixed(n)) {
+        for node in mesh.nodes().filter(|&n| mesh.is_on_boundary(n)) {
             let p = mesh.uv(node);
             let theta: f64 = mesh
                 .fan(node)
@@ -113,7 +113,7 @@ impl Valences {
             for i in 0..n {
                 for count in 2..n.saturating_sub(1) {
                     let k = i + count;
-                    if k >= n && mesh.is_fixed(node) {
+                    if k >= n && mesh.is_on_boundary(node) {
                         break;
                     }
                     let (h_vp, h_vq) = (spokes[i], spokes[k % n]);
