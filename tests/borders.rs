@@ -276,3 +276,49 @@ fn any_number_of_points_gives_a_sound_mesh_with_all_of_them() {
         assert_eq!(points(&quads).len(), count, "{more}");
     }
 }
+
+/// The nodes of the loop around a hole, by its middle and its largest radius; and the area that it encloses.
+fn hole(mesh: &MeshFile, middle: DVec3, radius: f64) -> (Vec<DVec3>, f64) {
+    let on = |k: u32| mesh.points[k as usize].distance(middle) <= 1.001 * radius;
+    let border: Vec<[DVec3; 2]> = (mesh.lines.iter().filter(|line| line.iter().all(|&k| on(k))))
+        .map(|line| line.map(|k| mesh.points[k as usize]))
+        .collect();
+    let area = border.iter().map(|[a, b]| 0.5 * (*a - middle).cross(*b - middle).length()).sum();
+    (border.into_iter().map(|[a, _]| a).collect(), area)
+}
+
+#[test]
+fn a_small_hole_keeps_its_shape_whatever_the_sizes_are() {
+    let (done, quads) = converted(&Case::read(&data("coarse_hole.toml")).unwrap());
+    let area_of_circle = std::f64::consts::PI * 0.36;
+    let (nodes, area) = hole(&quads, DVec3::new(5.0, 5.0, 0.0), 0.6);
+    assert!(nodes.len() >= 8 && (area / area_of_circle - 1.0).abs() < 0.1, "{} {area}", nodes.len());
+    assert_eq!(done.repairs, ["1 curve was divided more finely than the sizes ask, to keep the shape"]);
+    // The limits of the case decide.
+    let text = std::fs::read_to_string(data("coarse_hole.toml")).unwrap();
+    let edges = |keys: &str| {
+        let case = Case::parse(&text.replace("version = 1", &format!("version = 1\n{keys}")), "a", "a", Path::new(""));
+        hole(&converted(&case.unwrap()).1, DVec3::new(5.0, 5.0, 0.0), 0.6).0.len()
+    };
+    assert_eq!(edges("least_segments = 12"), 12);
+    assert!(edges("chord = 0.01") >= 22);
+    assert!(edges("chord = 1\nleast_segments = 3") <= 6);
+    assert!(Case::parse("version = 1\nchord = 0\n", "a", "a", Path::new("")).is_err());
+}
+
+#[test]
+fn the_hole_of_a_flat_mesh_keeps_its_shape_to_a_tenth_of_its_radius() {
+    let plain = ImportOptions::default();
+    let sized = ImportOptions { mesh_size: Some(15.0), curvature: Some(0.01), ..ImportOptions::default() };
+    for (options, least) in [(plain, 7), (sized, 20)] {
+        let (_, quads) = converted_mesh("plate_hole_soup.obj", &options);
+        let middle = DVec3::new(0.0, 25.0, 25.0);
+        let (nodes, area) = hole(&quads, middle, 10.0);
+        assert!(nodes.len() >= least, "{}", nodes.len());
+        // The distance of each chord from the circle through the corners of the hole.
+        let mut ends = quads.lines.iter().map(|line| line.map(|k| quads.points[k as usize]));
+        let inside = |p: DVec3| p.distance(middle) < 12.0;
+        assert!(ends.all(|[a, b]| !inside(a) || !inside(b) || a.midpoint(b).distance(middle) >= 9.0));
+        assert!(area > 0.88 * std::f64::consts::PI * 100.0, "{area}");
+    }
+}

@@ -147,7 +147,7 @@ pub(super) struct MeshArguments {
     /// Element size on MESH; with --curvature that of flat regions
     #[arg(long, value_name = "H")]
     mesh_size: Option<f64>,
-    /// Smaller elements where MESH is curved: distance between chord and arc, divided by the radius (0.01)
+    /// Smaller elements where MESH or its border is curved: distance of chord and arc, divided by the radius (0.01)
     #[arg(long, value_name = "ERR", requires = "mesh_size")]
     curvature: Option<f64>,
     /// Keep edges of MESH with a fold beyond this angle, in degrees [default: 40]
@@ -159,6 +159,9 @@ pub(super) struct MeshArguments {
     /// Multiply the coordinates of MESH (0.001: from millimetres to metres)
     #[arg(long, value_name = "FACTOR")]
     scale: Option<f64>,
+    /// Keep the shape of borders of MESH: distance of chord and arc, divided by the radius [default: 0.1]
+    #[arg(long, value_name = "ERR")]
+    chord: Option<f64>,
     /// Read MESH as if it had no groups, or not those of these names
     #[arg(long, value_name = "NAME,...", num_args = 0..=1, require_equals = true, default_missing_value = "")]
     ignore_groups: Option<String>,
@@ -167,18 +170,32 @@ pub(super) struct MeshArguments {
 impl MeshArguments {
     /// The options that they set.
     pub fn options(&self) -> ImportOptions {
-        let &MeshArguments { used, split_odd, mesh_size, curvature, feature_angle, chart_stretch, scale, .. } = self;
+        let &MeshArguments {
+            used, split_odd, mesh_size, curvature, feature_angle, chart_stretch, scale, chord, ..
+        } = self;
         let ignore_groups = match self.ignore_groups.as_deref() {
             None => Ignored::Nothing,
             Some("") => Ignored::All,
             Some(names) => Ignored::Named(names.split(',').map(|name| name.trim().to_owned()).collect()),
         };
-        ImportOptions { used, split_odd, mesh_size, curvature, feature_angle, chart_stretch, scale, ignore_groups }
+        ImportOptions {
+            used,
+            split_odd,
+            mesh_size,
+            curvature,
+            feature_angle,
+            chart_stretch,
+            scale,
+            chord,
+            ignore_groups,
+        }
     }
 
     /// The options as command-line arguments.
     pub fn words(&self) -> Vec<String> {
-        let &MeshArguments { used, split_odd, mesh_size, curvature, feature_angle, chart_stretch, scale, .. } = self;
+        let &MeshArguments {
+            used, split_odd, mesh_size, curvature, feature_angle, chart_stretch, scale, chord, ..
+        } = self;
         let number = |name: &str, value: Option<f64>| value.map(|value| format!("--{name}={value}"));
         let words = [
             used.map(|used| format!("--use={}", used.name())),
@@ -188,6 +205,7 @@ impl MeshArguments {
             number("feature-angle", feature_angle),
             number("chart-stretch", chart_stretch),
             number("scale", scale),
+            number("chord", chord),
             self.ignore_groups.as_ref().map(|names| match names.as_str() {
                 "" => "--ignore-groups".to_owned(),
                 names => format!("--ignore-groups={names}"),

@@ -9,7 +9,7 @@ use super::length::{Piece, give, measure, share_out};
 use crate::core::fault::Fault;
 use crate::core::geometry::assembly::{loop_name, placed};
 use crate::core::geometry::curve::distance_to_segment;
-use crate::core::geometry::{CurveId, DirectedCurve, Domain};
+use crate::core::geometry::{CurveId, DirectedCurve, Domain, DomainCurve};
 use crate::core::kernel::{DisjointSets, parity};
 use crate::core::metric::MetricSource;
 
@@ -30,6 +30,8 @@ pub struct DividedDomain {
     pub joined: Vec<u32>,
     /// On surfaces: the point in space of each node. Empty in the plane.
     pub xyz: Vec<DVec3>,
+    /// The number of curves with more segments than the sizes ask for, to keep their shape.
+    pub shaped: usize,
     /// Nodes at hard points, each with the number of its point.
     pub hard: Vec<(u32, u32)>,
 }
@@ -40,6 +42,8 @@ pub struct Division<'a> {
     metric: &'a dyn MetricSource,
     /// The smooth pieces of each curve, between its corners; empty for an image that follows another.
     pieces: Vec<Vec<Piece>>,
+    /// The number of curves with more segments than the sizes ask for, to keep their shape.
+    shaped: usize,
 }
 
 /// All of the division, for tests.
@@ -56,7 +60,7 @@ impl<'a> Division<'a> {
     /// # Errors
     /// If the metric fails, sizes are far too small, or a fixed number is less than the number of pieces.
     pub fn measure(domain: &'a Domain, metric: &'a dyn MetricSource) -> Result<Self, Fault> {
-        let mut division = Division { domain, metric, pieces: Vec::with_capacity(domain.curves.len()) };
+        let mut division = Division { domain, metric, pieces: Vec::with_capacity(domain.curves.len()), shaped: 0 };
         let mut total = 0.0;
         for (id, curve) in domain.curves.iter().enumerate() {
             if curve.first.index() != id {
@@ -73,13 +77,14 @@ impl<'a> Division<'a> {
             match curve.segments {
                 None => {
                     for piece in &mut pieces {
-                        piece.segments = (piece.length().round() as u32).max(1);
+                        piece.segments = (piece.length().round() as u32).max(piece.least);
                     }
-                    let closed = domain.is_closed(curve.first);
-                    let few: u32 = pieces.iter().map(|p| p.segments).sum();
-                    if closed && few < 3 {
-                        give(&mut pieces, 3 - few);
+                    let (least, few) = (division.least(curve), pieces.iter().map(|p| p.segments).sum::<u32>());
+                    if few < least {
+                        give(&mut pieces, least - few);
                     }
+                    let all: u32 = pieces.iter().map(|p| p.segments).sum();
+                    division.shaped += usize::from(all > by_sizes(domain, curve, metric, all)?);
                 }
                 Some(n) => {
                     if (n as usize) < pieces.len() {
@@ -102,6 +107,12 @@ impl<'a> Division<'a> {
     /// The number of segments of a curve.
     pub fn segments(&self, id: CurveId) -> u32 {
         self.pieces[self.first(id).index()].iter().map(|p| p.segments).sum()
+    }
+
+    /// The least number of segments of a curve.
+    fn least(&self, curve: &DomainCurve) -> u32 {
+        let closed = if self.domain.is_closed(curve.first) { 3 } else { 1 };
+        curve.turning.as_ref().map_or(closed, |turning| turning.least.max(closed))
     }
 
     /// The curve that determines the division of this one.
@@ -230,13 +241,15 @@ impl<'a> Division<'a> {
         if curve.segments.is_some() || curve.first.index() != c {
             return None;
         }
-        let least = if self.domain.is_closed(curve.first) { 3 } else { 1 };
+        let least = self.least(curve);
         let may_shrink = self.segments(CurveId(c as u32)) > least;
         let mut best: Option<(f64, usize, u32)> = None;
         for (i, piece) in self.pieces[c].iter().enumerate() {
             let n = piece.segments;
             for changed in [n + 1, n - 1] {
-                if (changed > n || (may_shrink && changed > 0)) && best.is_none_or(|b| piece.error(changed) < b.0) {
+                if (changed > n || (may_shrink && changed >= piece.least))
+                    && best.is_none_or(|b| piece.error(changed) < b.0)
+                {
                     best = Some((piece.error(changed), i, changed));
                 }
             }
@@ -322,7 +335,8 @@ impl<'a> Division<'a> {
     /// # Errors
     /// If the metric fails.
     pub fn nodes(&self) -> Result<DividedDomain, Fault> {
-        let mut divided = DividedDomain { nodes: self.domain.vertices.clone(), ..DividedDomain::default() };
+        let mut divided =
+            DividedDomain { nodes: self.domain.vertices.clone(), shaped: self.shaped, ..DividedDomain::default() };
         if let Some(spatial) = &self.domain.spatial {
             divided.joined = self.joined_vertices();
             divided.xyz = spatial.vertex_of.iter().map(|&v| spatial.vertices[v as usize]).collect();
@@ -359,6 +373,20 @@ impl<'a> Division<'a> {
         hard::place(self.domain, &mut divided);
         Ok(divided)
     }
+}
+
+/// The number of segments that the sizes alone ask for on a curve that is to have `all`.
+fn by_sizes(domain: &Domain, curve: &DomainCurve, metric: &dyn MetricSource, all: u32) -> Result<u32, Fault> {
+    // Most curves turn too little for their shape to matter.
+    match &curve.turning {
+        Some(turning) if turning.least >= all || 2.0 * turning.between(0.0, 1.0) > f64::from(all) => {}
+        _ => return Ok(all),
+    }
+    let plain: Vec<DomainCurve> =
+        domain.images(curve.first).into_iter().map(|image| DomainCurve { turning: None, ..image.clone() }).collect();
+    let pieces = measure(&plain.iter().collect::<Vec<_>>(), metric, &hard::parameters(domain, curve.first))?;
+    let closed = if domain.is_closed(curve.first) { 3 } else { 1 };
+    Ok(pieces.iter().map(|piece| (piece.length().round() as u32).max(1)).sum::<u32>().max(closed))
 }
 
 #[cfg(test)]

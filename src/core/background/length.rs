@@ -10,6 +10,9 @@ use crate::core::geometry::assembly::placed;
 use crate::core::kernel::decimal::point_text;
 use crate::core::metric::MetricSource;
 
+/// The shape asks for no segment more because of rounding.
+const ROUNDING: f64 = 1e-6;
+
 /// A piece of a curve between two corners.
 pub struct Piece {
     /// Parameters and metric lengths from the start of the piece, ascending; the quadrature is accurate between two
@@ -17,6 +20,8 @@ pub struct Piece {
     table: Vec<(f64, f64)>,
     /// Number of segments.
     pub segments: u32,
+    /// The least number of segments that keeps its shape.
+    pub least: u32,
 }
 
 impl Piece {
@@ -36,7 +41,7 @@ impl Piece {
         let k = self.table.iter().position(|entry| entry.0 == t).filter(|&k| k > 0 && k + 1 < self.table.len())?;
         let before = self.table[k].1;
         let rest = self.table[k..].iter().map(|&(t, length)| (t, length - before)).collect();
-        let mut parts = [self.table[..=k].to_vec(), rest].map(|table| Piece { table, segments: 1 });
+        let mut parts = [self.table[..=k].to_vec(), rest].map(|table| Piece { table, segments: 1, least: 1 });
         let share = |part: &Piece| (part.length() / self.segment_length()).round().max(1.0) as u32;
         parts.iter_mut().for_each(|part| part.segments = share(part));
         let all: u32 = parts.iter().map(|part| part.segments).sum();
@@ -120,7 +125,9 @@ pub fn measure(images: &[&DomainCurve], metric: &dyn MetricSource, besides: &[f6
             }
         }
         if w[1] >= 1.0 || corners.get(pieces.len()).is_some_and(|&t| t <= w[1]) {
-            pieces.push(Piece { table: std::mem::replace(&mut table, vec![(w[1], 0.0)]), segments: 1 });
+            let table = std::mem::replace(&mut table, vec![(w[1], 0.0)]);
+            let asked = curve.turning.as_ref().map_or(0.0, |turning| turning.between(table[0].0, w[1]));
+            pieces.push(Piece { table, segments: 1, least: (asked - ROUNDING).ceil().max(1.0) as u32 });
         }
     }
     Ok(pieces)
@@ -174,8 +181,8 @@ fn parameter(
     Ok(t)
 }
 
-/// Metric length of the derivative at `t`. It is the same on every face of the curve, unless sizes depend on the
-/// surface: then the smallest sizes count.
+/// Metric length of the derivative at `t`, but no less than the segments that the shape of the curve asks for. It is
+/// the same on every face of the curve, unless sizes depend on the surface: then the smallest sizes count.
 fn speed(images: &[&DomainCurve], metric: &dyn MetricSource, t: f64) -> Result<f64, Fault> {
     let mut fastest = 0.0_f64;
     for curve in images {
@@ -192,7 +199,7 @@ fn speed(images: &[&DomainCurve], metric: &dyn MetricSource, t: f64) -> Result<f
         }
         fastest = fastest.max(square.max(0.0).sqrt());
     }
-    Ok(fastest)
+    Ok(images[0].turning.as_ref().map_or(fastest, |turning| fastest.max(turning.rate(t))))
 }
 
 /// Metric length between two parameters by three-point Gauss quadrature.

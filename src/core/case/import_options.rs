@@ -27,6 +27,8 @@ pub struct ImportOptions {
     pub chart_stretch: Option<f64>,
     /// Factor on all coordinates.
     pub scale: Option<f64>,
+    /// Limit of the distance between a chord and its border, divided by the radius.
+    pub chord: Option<f64>,
     /// The groups of the mesh that are ignored.
     pub ignore_groups: Ignored,
 }
@@ -43,6 +45,7 @@ impl ImportOptions {
         line("feature_angle", number(self.feature_angle));
         line("chart_stretch", number(self.chart_stretch));
         line("scale", number(self.scale));
+        line("chord", number(self.chord));
         line(
             "ignore_groups",
             match &self.ignore_groups {

@@ -29,7 +29,7 @@ pub use taking::{MeshSource, MeshUse, Taking};
 
 use crate::core::fault::{Fault, FaultKind};
 use crate::core::formats::save::load;
-use crate::core::geometry::{ComplexSpec, CurveSpec, FaceSpec, PointSpec};
+use crate::core::geometry::{ComplexSpec, CurveSpec, FaceSpec, PointSpec, ShapeLimits};
 use crate::core::metric::FieldSpec;
 use crate::core::soup::{Ignored, MeshFile};
 
@@ -87,6 +87,10 @@ pub struct Case {
     pub fields: Vec<FieldSpec>,
     /// Bound of the metric's gradation (docs/algorithm.md, "Gradation"), greater than 1; `None`: not bounded.
     pub gradation: Option<f64>,
+    /// The largest distance of a chord from a curve, as a fraction of the radius.
+    pub chord: f64,
+    /// The least number of segments of a smooth closed curve.
+    pub least_segments: u32,
     /// Whether a boundary with a fixed odd number of segments may get one more; otherwise it is rejected.
     pub split_odd: bool,
     /// The groups of its mesh that are ignored.
@@ -145,6 +149,8 @@ impl Case {
             "notes",
             "parameters",
             "gradation",
+            "chord",
+            "least_segments",
             "split_odd",
             "ignore_groups",
             "surface",
@@ -181,6 +187,8 @@ impl Case {
             notes: word("notes")?.unwrap_or_default().trim().to_owned(),
             parameters: parameters(&table)?,
             gradation: gradation(&table)?,
+            chord: chord(&table)?,
+            least_segments: least_segments(&table)?,
             split_odd: table.get("split_odd").map_or(Ok(false), |v| v.flag())?,
             ignore_groups: table.get("ignore_groups").map_or(Ok(Ignored::Nothing), |v| taking::ignored(&v))?,
             domain,
@@ -224,6 +232,8 @@ impl Case {
             points: Vec::new(),
             fields: Vec::new(),
             gradation: None,
+            chord: ShapeLimits::CHORD,
+            least_segments: ShapeLimits::LEAST_SEGMENTS,
             split_odd: false,
             ignore_groups: Ignored::Nothing,
             text: String::new(),
@@ -259,7 +269,7 @@ fn domain(table: &Table<'_>, folder: &Path) -> Result<DomainSource, Fault> {
         }
     };
     if let Some(value) = table.get("background") {
-        alone("background", &["surface", "curve", "face", "mesh", "sol"])?;
+        alone("background", &["surface", "curve", "face", "mesh", "sol", "chord", "least_segments"])?;
         return elements::elements(&value.table()?);
     }
     if let Some(path) = file("mesh")? {
@@ -322,6 +332,20 @@ pub(in crate::core) fn set_parameters(parameters: &mut Parameters, table: &Table
         }
     }
     Ok(())
+}
+
+fn chord(table: &Table<'_>) -> Result<f64, Fault> {
+    let Some(value) = table.get("chord") else { return Ok(ShapeLimits::CHORD) };
+    let chord = value.number()?;
+    if chord > 0.0 && chord <= 1.0 {
+        Ok(chord)
+    } else {
+        Err(value.wrong("greater than 0 and at most 1", "chord = 0.1"))
+    }
+}
+
+fn least_segments(table: &Table<'_>) -> Result<u32, Fault> {
+    table.get("least_segments").map_or(Ok(ShapeLimits::LEAST_SEGMENTS), |value| value.count(3, 10_000))
 }
 
 fn gradation(table: &Table<'_>) -> Result<Option<f64>, Fault> {

@@ -16,7 +16,7 @@ use crate::core::fault::Fault;
 use crate::core::geometry::complex::{Lifted, assemble};
 use crate::core::geometry::lifting::Piece;
 use crate::core::geometry::{
-    Domain, DomainPoint, FaceSpec, FaceSurface, Facets, Image, NamedCurve, PointOn, SpaceCurve,
+    Domain, DomainCurve, DomainPoint, FaceSpec, FaceSurface, Facets, Image, NamedCurve, PointOn, SpaceCurve,
 };
 use crate::core::kernel::Metric3;
 use crate::core::kernel::box_tree::extent;
@@ -45,6 +45,8 @@ pub struct Surface {
     pub regions: Vec<names::Named>,
     /// The line of the file on which each curve of the domain lies, if any.
     pub lines: Vec<Option<u32>>,
+    /// Whether each curve of the domain is a feature, and not only a cut for flattening.
+    pub features: Vec<bool>,
 }
 
 /// Border sides from one junction to the next, or a closed loop.
@@ -132,10 +134,12 @@ pub fn surface(
     domain.points = hard_points(mesh, &charts, &vertex_of, &domain);
     let region = |chart: &Chart| regions[mesh.region[chart.triangles[0] as usize] as usize].clone();
     let regions = charts.iter().map(region).collect();
-    let by_name: FxHashMap<&str, Option<u32>> =
-        curves.iter().zip(&chains).map(|(curve, chain)| (curve.name.as_str(), chain.line)).collect();
-    let lines = domain.curves.iter().map(|curve| by_name.get(curve.name.as_str()).copied().flatten()).collect();
-    Ok(Surface { domain, charts, regions, lines })
+    let by_name: FxHashMap<&str, &Chain> =
+        curves.iter().zip(&chains).map(|(curve, chain)| (curve.name.as_str(), chain)).collect();
+    let chain_of = |curve: &DomainCurve| by_name.get(curve.name.as_str());
+    let lines = domain.curves.iter().map(|curve| chain_of(curve)?.line).collect();
+    let features = domain.curves.iter().map(|curve| chain_of(curve).is_some_and(|chain| chain.feature)).collect();
+    Ok(Surface { domain, charts, regions, lines, features })
 }
 
 impl Surface {

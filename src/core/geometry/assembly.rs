@@ -119,6 +119,7 @@ pub fn resolve(specs: &[CurveSpec], faces: &[FaceSpec]) -> Result<(Vec<DomainCur
             kind,
             fine: Vec::new(),
             first: ids[i],
+            turning: None,
         });
     }
     let lists = loops_by_spec

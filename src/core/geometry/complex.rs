@@ -300,6 +300,7 @@ pub(in crate::core) fn assemble(
             kind,
             fine: Vec::new(),
             first,
+            turning: None,
         });
         numbers.push(c);
         if let Some((i, k)) = at {

@@ -1,8 +1,11 @@
 //! A curve of a domain: its course, its vertices, the faces on its sides.
 
+use std::sync::Arc;
+
 use glam::DVec2;
 
 use super::course::Course;
+use super::turning::Turning;
 
 /// A curve of a [`Domain`](super::domain::Domain); dense from 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -57,6 +60,8 @@ pub struct DomainCurve {
     /// The first image of the same space curve, which determines the subdivision of all images; in planar domains the
     /// curve itself.
     pub first: CurveId,
+    /// The limit of its chords, of the first image of a curve.
+    pub turning: Option<Arc<Turning>>,
 }
 
 impl DomainCurve {

@@ -9,6 +9,7 @@ mod surface;
 mod primitive;
 mod space_curve;
 mod swept;
+mod turning;
 mod chart;
 mod facets;
 mod face_surface;
@@ -23,6 +24,7 @@ pub(crate) mod crossing;
 pub(crate) mod assembly;
 mod domain;
 mod hard;
+mod chord_limits;
 mod named_curve;
 pub mod lifting;
 mod whole_surface;
@@ -46,5 +48,6 @@ pub use spec::{
     SurfaceSpec,
 };
 pub use surface::{Bend, Edge, NurbsSurface, SurfacePoint};
+pub use turning::{ShapeLimits, Turning};
 #[cfg(test)]
 pub(crate) mod fixtures;

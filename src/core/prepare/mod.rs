@@ -6,7 +6,7 @@ mod of_domain;
 mod of_elements;
 mod of_mesh;
 
-use of_domain::{FileLines, from_domain};
+use of_domain::{FileLines, from_domain, shape_limits};
 use of_elements::from_elements;
 use of_mesh::from_mesh;
 
@@ -47,7 +47,10 @@ pub fn background(case: &Case, watch: &mut dyn Watch) -> Result<Background, Faul
             .of_kind(FaultKind::Parameter)
             .remedy("Remove it: layers then applies to every loop"));
     }
-    let whole = |domain| from_domain(case, domain, None, FileLines::default(), watch);
+    let whole = |mut domain: Domain| {
+        domain.limit_chords(&shape_limits(case), &|_| true);
+        from_domain(case, domain, None, FileLines::default(), watch)
+    };
     let (made, kind) = match &case.domain {
         DomainSource::Curves { curves, faces } => {
             let domain = Domain::build(curves.clone(), faces.clone());

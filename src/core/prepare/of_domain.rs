@@ -12,11 +12,12 @@ use crate::core::background::{Adapted, DividedDomain};
 use crate::core::case::Case;
 use crate::core::discrete::lines::PointGroups;
 use crate::core::fault::{Fault, FaultKind};
-use crate::core::geometry::{Domain, Line, PointSpec};
+use crate::core::geometry::{Domain, Line, PointSpec, ShapeLimits};
 use crate::core::mesh::{Embedding, Mesh, Named, Names, PointId, TriangleSet};
 use crate::core::metric::measure::triangle_area;
 use crate::core::metric::{Field, FieldSpec, MetricSource, Sizing};
 use crate::core::progress::{Stage, Watch};
+use crate::core::soup::Repair;
 
 /// Number of points at which the metric is checked first.
 const SURVEYED: usize = 20_000;
@@ -63,7 +64,9 @@ pub(super) fn from_domain(
     let mut names = Names::of_faces(faces).with_lines(lines.names, sides);
     let own = case.points.iter().map(|point| vec![Some(Named::new(&point.name))]);
     names.further.points = named_points(&lines.points.unwrap_or_else(|| own.collect()), &made.hard);
-    Ok(Background { mesh: made.mesh, sizing, names, adapted: made.adapted, repairs: Vec::new() })
+    let mut repairs = Vec::new();
+    Repair::ShapedCurve.report(made.divided.shaped, &mut repairs);
+    Ok(Background { mesh: made.mesh, sizing, names, adapted: made.adapted, repairs })
 }
 
 /// The lines and hard points of the file of a domain.
@@ -94,6 +97,17 @@ struct AdaptedMesh {
     lines: Vec<([PointId; 2], u32)>,
     /// The hard points, by number.
     hard: Vec<(u32, PointId)>,
+}
+
+/// The limits that a case sets on the chords of curves.
+pub(super) fn shape_limits(case: &Case) -> ShapeLimits {
+    let mut by_fields = ShapeLimits::NO_FIELD;
+    for spec in &case.fields {
+        if let FieldSpec::Curvature { chord, least, .. } = spec {
+            by_fields = [by_fields[0].min(*chord), by_fields[1].min(*least * case.parameters.size_scale)];
+        }
+    }
+    ShapeLimits { chord: case.chord, least_segments: case.least_segments, by_fields }
 }
 
 /// The field of the size that a hard point asks for.

@@ -6,7 +6,7 @@ use glam::DVec2;
 
 use super::Background;
 use super::graded::bounded;
-use super::of_domain::{FileLines, from_domain, named_points};
+use super::of_domain::{FileLines, from_domain, named_points, shape_limits};
 use crate::core::background::Adapted;
 use crate::core::background::implied_metric::implied_metric;
 use crate::core::background::import::import;
@@ -122,12 +122,15 @@ fn from_surface(
     let made = if converts {
         from_own_triangles(case, &mesh, &surface, fields, lines, &mut repairs)
     } else {
-        from_domain(case, surface.domain, Some(fields), lines, watch)
+        let mut domain = surface.domain;
+        domain.limit_chords(&shape_limits(case), &|curve| surface.features[curve]);
+        from_domain(case, domain, Some(fields), lines, watch)
     };
     let mut made = made.map_err(here)?;
     made.names.faces = faces;
     made.names.further.lines = file.further_lines();
     made.names.further.faces = further;
+    repairs.append(&mut made.repairs);
     Ok(Background { repairs, ..made })
 }
 

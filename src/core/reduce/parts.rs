@@ -10,8 +10,17 @@ use super::search::Search;
 use crate::core::fault::Fault;
 
 /// Keys of a case that have a default.
-pub(super) const OPTIONS: [&str; 7] =
-    ["gradation", "split_odd", "ignore_groups", "use", "feature_angle", "chart_stretch", "scale"];
+pub(super) const OPTIONS: [&str; 9] = [
+    "gradation",
+    "chord",
+    "least_segments",
+    "split_odd",
+    "ignore_groups",
+    "use",
+    "feature_angle",
+    "chart_stretch",
+    "scale",
+];
 
 /// The lists of curves within a face that can be left out one by one.
 const WITHIN: [&str; 3] = ["holes", "cracks", "repeated"];
