@@ -151,6 +151,7 @@ fn what_was_given_stays_as_it_was_given_in_the_panel_and_beyond() {
     let options = ImportOptions {
         feature_angle: Some(61.234_567_8),
         chart_stretch: Some(3.217_592_653),
+        chord: Some(0.037_1),
         mesh_size: Some(2e12),
         curvature: Some(0.75),
         ..ImportOptions::default()
@@ -161,7 +162,7 @@ fn what_was_given_stays_as_it_was_given_in_the_panel_and_beyond() {
     shown(&mut harness);
     harness.state_mut().apply(Command::SetImport(Box::new(options.clone()), Gesture::Done));
     shown(&mut harness);
-    for field in ["Feature angle", "Chart stretch", "Edge length", "Chord error"] {
+    for field in ["Feature angle", "Chart stretch", "Edge length", "Chord error", "Border error"] {
         harness.get_by_label(field).focus();
         harness.run_steps(2);
         harness.key_press(Key::Tab);

@@ -17,6 +17,7 @@ use crate::app::input;
 pub use crate::core::case::ImportOptions;
 use crate::core::case::{MeshUse, Taking};
 use crate::core::fault::Fault;
+use crate::core::soup::Ignored;
 
 /// How many changes can be undone.
 const UNDO: usize = 100;
@@ -42,6 +43,9 @@ pub struct Import {
     /// How the parameters of its run are changed.
     pub overrides: Overrides,
     preview: Preview,
+    /// The groups without which the mesh was read.
+    without: Ignored,
+    wake: Wake,
     /// The mesh with its repairs, once it has been read.
     pub loaded: Option<Arc<Loaded>>,
     /// Why it was refused; shapes are in the unit of the file.
@@ -65,7 +69,9 @@ impl Import {
     /// Starts to read a mesh; `generation` is at least the number of any picture before.
     pub fn begin(path: PathBuf, options: ImportOptions, generation: u64, wake: Wake) -> Import {
         Import {
-            preview: Preview::of(path.clone(), wake),
+            preview: Preview::of(path.clone(), options.ignore_groups.clone(), wake.clone()),
+            without: options.ignore_groups.clone(),
+            wake,
             path,
             options,
             overrides: Overrides::default(),
@@ -170,6 +176,12 @@ impl Import {
     /// Takes in what the preview reports, and asks for another picture if the options have changed. Returns why the
     /// mesh cannot be read, if that has turned out.
     pub fn look(&mut self, dark: bool) -> Option<Fault> {
+        if self.without != self.options.ignore_groups {
+            // The repair depends on the groups.
+            self.without = self.options.ignore_groups.clone();
+            self.preview = Preview::of(self.path.clone(), self.without.clone(), self.wake.clone());
+            (self.loaded, self.shown, self.wanted, self.refused) = (None, None, None, None);
+        }
         let mut unreadable = None;
         for told in self.preview.hear() {
             match told {

@@ -231,7 +231,8 @@ fn node_ids(mesh: &Mesh, point_of: &[PointId], points: usize) -> Vec<Data> {
 /// The tag of each face: that of the file, otherwise the next free one from 1 in the order of the names, equal for
 /// faces of one name (the charts of a region).
 fn face_tags(mesh: &Mesh, names: &Names) -> Vec<u32> {
-    let mut tags = tags_of(&names.faces);
+    let further = names.further.faces.iter().flat_map(|groups| &groups.groups);
+    let mut tags = tags_of(&names.faces, &further.filter_map(|(named, _)| named.tag).collect());
     // Faces without names get their numbers.
     let faces = mesh.elements().map(|e| mesh.region(e) + 1).max().unwrap_or(0);
     (tags.len() as u32..faces).for_each(|face| tags.push(face + 1));
@@ -240,8 +241,8 @@ fn face_tags(mesh: &Mesh, names: &Names) -> Vec<u32> {
 
 /// The tags of the lines, then of `boundary` and `inside`; and the tag of the merging front.
 fn line_tags(names: &Names) -> (Vec<u32>, u32) {
-    let mut tags = tags_of(&names.lines);
-    let further: Vec<u32> = names.further.lines.iter().filter_map(|(named, _)| named.tag).collect();
+    let further: BTreeSet<u32> = names.further.lines.iter().filter_map(|(named, _)| named.tag).collect();
+    let mut tags = tags_of(&names.lines, &further);
     // The default tags, or the next free ones.
     for own in [BOUNDARY, INSIDE, FRONT_TAG] {
         let free = (own..).find(|tag| !tags.contains(tag) && !further.contains(tag)).unwrap_or(own);
@@ -251,9 +252,10 @@ fn line_tags(names: &Names) -> (Vec<u32>, u32) {
     (tags, front)
 }
 
-fn tags_of(named: &[Named]) -> Vec<u32> {
+/// The tags of names: their own, or the next free ones that no further group has either.
+fn tags_of(named: &[Named], further: &BTreeSet<u32>) -> Vec<u32> {
     let given: BTreeSet<u32> = named.iter().filter_map(|named| named.tag).collect();
-    let mut free = (1..).filter(|tag| !given.contains(tag));
+    let mut free = (1..).filter(|tag| !given.contains(tag) && !further.contains(tag));
     let mut known: FxHashMap<&str, u32> = FxHashMap::default();
     named
         .iter()

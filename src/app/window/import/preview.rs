@@ -19,6 +19,7 @@ use crate::core::discrete::{Census, Division, Edges, Feature, Repaired, StretchB
 use crate::core::fault::Fault;
 use crate::core::formats::format::read_mesh_watched;
 use crate::core::progress::{Cancel, Stage, Watch};
+use crate::core::soup::Ignored;
 use crate::render::scene::{Given, Scene};
 
 /// Kinds of features, in the order in which they are listed.
@@ -95,15 +96,16 @@ pub struct Preview {
 }
 
 impl Preview {
-    /// Starts to read a mesh; `wake` is called when the thread has something to report.
-    pub fn of(path: PathBuf, wake: Wake) -> Preview {
+    /// Starts to read a mesh without the groups that are ignored; `wake` is called when the thread has something to
+    /// report.
+    pub fn of(path: PathBuf, ignored: Ignored, wake: Wake) -> Preview {
         let (ask, asked) = channel();
         let (tell, told) = channel();
         let cancel = Cancel::new();
         let reading = cancel.clone();
         std::thread::spawn(move || {
             let mut voice = Voice { tell, wake, cancel: reading, last: None };
-            let loaded = load(&path, &mut voice).map(Arc::new);
+            let loaded = load(&path, &ignored, &mut voice).map(Arc::new);
             let read = loaded.as_ref().ok().cloned();
             if !matches!(&loaded, Err(fault) if fault.is_stop()) {
                 voice.say(PreviewNews::Loaded(loaded));
@@ -165,9 +167,10 @@ impl Watch for Voice {
     }
 }
 
-fn load(path: &Path, voice: &mut Voice) -> Result<Loaded, Fault> {
-    let file = read_mesh_watched(path, None, voice)?;
+fn load(path: &Path, ignored: &Ignored, voice: &mut Voice) -> Result<Loaded, Fault> {
+    let mut file = read_mesh_watched(path, None, voice)?;
     let place = |fault: Fault| if fault.is_stop() { fault } else { fault.at(path.display().to_string()) };
+    file.ignore_groups(ignored).map_err(place)?;
     let (is_plane, has_metric) = (file.is_plane(), file.metric.is_some());
     let skipped: Vec<String> =
         file.skipped.iter().map(|(kind, count)| format!("not read: {kind} ({count} times)")).collect();
@@ -308,7 +311,7 @@ mod tests {
     #[test]
     fn of_many_wishes_the_last_one_is_shown() {
         let folder = tempfile::tempdir().unwrap();
-        let mut preview = Preview::of(tetrahedron(folder.path()), Arc::new(|| {}));
+        let mut preview = Preview::of(tetrahedron(folder.path()), Ignored::Nothing, Arc::new(|| {}));
         assert!(
             next(&preview, |told| matches!(told, PreviewNews::Loaded(Ok(loaded)) if loaded.census.nodes == 4))
                 .is_some()
@@ -332,7 +335,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("b.obj");
         std::fs::write(&path, "v 0 0 0\nf 1 2 3\n").unwrap();
-        let preview = Preview::of(path, Arc::new(|| {}));
+        let preview = Preview::of(path, Ignored::Nothing, Arc::new(|| {}));
         let told = next(&preview, |told| matches!(told, PreviewNews::Loaded(Err(_))));
         let Some(PreviewNews::Loaded(Err(fault))) = told else { panic!("no complaint") };
         assert!(fault.place.contains("b.obj, line 2") && fault.what.contains("vertex 3"), "{fault}");

@@ -14,7 +14,9 @@ use crate::app::window::theme::{self, ink};
 use crate::app::window::words;
 use crate::core::case::{MeshUse, Taking};
 use crate::core::discrete::Feature;
+use crate::core::geometry::ShapeLimits;
 use crate::core::kernel::Shortest;
+use crate::core::soup::Ignored;
 use crate::render::palette::{Palette, Rgba};
 use crate::render::scene::{feature_line, seam_line};
 
@@ -25,6 +27,8 @@ const NAMES: f32 = 92.0;
 const REMESH: &str = "remesh its shape";
 const TRIANGLES: &str = "convert its triangles";
 const SPLIT_ODD: &str = "divide a side of odd borders";
+/// The name of the permission to ignore groups.
+const IGNORE_GROUPS: &str = "ignore";
 /// The first chord error when the user asks for sizes by curvature: the distance of a chord from its arc, over the
 /// radius.
 const CHORD: f64 = 0.01;
@@ -135,6 +139,7 @@ fn form(ui: &mut Ui, import: &Import, commands: &mut Vec<Command>, palette: &Pal
     heading(ui, "Import", "as on the command line", palette);
     ui.spacing_mut().item_spacing.y = 5.0;
     unit(ui, &mut options, &taking, &mut dragging, palette);
+    groups(ui, &mut options, palette);
     used(ui, &mut options, import, palette);
     sizes(ui, &mut options, import, &mut dragging, palette);
     let charted = import.has_charts();
@@ -215,6 +220,22 @@ fn unit(ui: &mut Ui, options: &mut ImportOptions, taking: &Taking, dragging: &mu
     }
 }
 
+fn groups(ui: &mut Ui, options: &mut ImportOptions, palette: &Palette) {
+    let tip = "Read the mesh as if it had no groups, so that none divides it (--ignore-groups)";
+    row(ui, "groups", tip, palette, |ui| {
+        let before = options.ignore_groups == Ignored::All;
+        let mut all = before;
+        ui.checkbox(&mut all, IGNORE_GROUPS).on_hover_text(tip);
+        if all != before {
+            options.ignore_groups = if all { Ignored::All } else { Ignored::Nothing };
+        }
+        // Some of them are named on the command line.
+        if let Ignored::Named(names) = &options.ignore_groups {
+            ui.add(egui::Label::new(note(format!("without {}", names.join(", ")), palette)).truncate());
+        }
+    });
+}
+
 /// Rounds to twelve digits, as a person would write the number.
 fn rounded(value: f64) -> f64 {
     format!("{value:.11e}").parse().unwrap_or(value)
@@ -274,6 +295,18 @@ fn sizes(ui: &mut Ui, options: &mut ImportOptions, import: &Import, dragging: &m
     if let Some(chord) = &mut options.curvature {
         row(ui, "chord error", "How far a chord may be from its arc, over the radius", palette, |ui| {
             *dragging |= number(ui, chord, [1e-6, 0.5], 0.0002, "", "Chord error").dragged();
+        });
+    }
+    // Given triangles keep their borders as they are.
+    if import.used() == MeshUse::Shape {
+        let tip = "How far a chord may be from a border, over the radius, whatever the sizes are (--chord)";
+        row(ui, "border error", tip, palette, |ui| {
+            let before = options.chord.unwrap_or(ShapeLimits::CHORD);
+            let mut chord = before;
+            *dragging |= number(ui, &mut chord, [1e-6, 1.0], 0.001, "", "Border error").dragged();
+            if chord != before {
+                options.chord = unless_default(chord, ShapeLimits::CHORD);
+            }
         });
     }
 }

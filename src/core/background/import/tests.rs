@@ -386,7 +386,8 @@ proptest! {
         file.triangle_tags = tags.map(|t| t[..triangles.len()].to_vec()).unwrap_or_default();
         if let Ok(imported) = import(&file, split) {
             let set = &imported.set;
-            prop_assert!(set.triangles.iter().all(|t| firm(set.uv[t[0] as usize], set.uv[t[1] as usize], set.uv[t[2] as usize])));
+            let at = |node: u32| set.uv[node as usize];
+            prop_assert!(set.triangles.iter().all(|&[a, b, c]| firm(at(a), at(b), at(c))));
             prop_assert_eq!(set.triangles.len() % 2, 0);
             prop_assert!(implied_metric(set).iter().all(Metric2::is_spd));
         }

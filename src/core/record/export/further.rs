@@ -81,8 +81,17 @@ fn middles(export: &Export) -> Vec<DVec2> {
 
 /// The elements around the middles of given triangles: for a group so small that no element has its middle in one.
 fn around(export: &Export, groups: &GroupsByPlace, own: &[u32]) -> Vec<u32> {
-    let corners = |q: &[u32; 4]| [[q[0], q[1], q[2]], [q[0], q[2], q[3]]];
-    let halves: Vec<[u32; 3]> = export.triangles.iter().copied().chain(export.quads.iter().flat_map(corners)).collect();
+    // Cut along the diagonal that leaves the larger least half: a quadrilateral may have a reflex angle.
+    let area = |t: &[u32; 3]| {
+        let [p, q, r] = t.map(|n| export.uv[n as usize]);
+        (q - p).perp_dot(r - p)
+    };
+    let least = |halves: &[[u32; 3]; 2]| area(&halves[0]).min(area(&halves[1]));
+    let cut = |&[a, b, c, d]: &[u32; 4]| {
+        let ways = [[[a, b, c], [a, c, d]], [[a, b, d], [b, c, d]]];
+        if least(&ways[1]) > least(&ways[0]) { ways[1] } else { ways[0] }
+    };
+    let halves: Vec<[u32; 3]> = export.triangles.iter().copied().chain(export.quads.iter().flat_map(cut)).collect();
     let Ok(elements) = PlaneTriangles::new(&export.uv, &halves) else { return Vec::new() };
     let triangles = export.triangles.len() as u32;
     let element = |half: u32| half.checked_sub(triangles).map_or(half, |half| triangles + half / 2);

@@ -16,7 +16,11 @@ pub fn show(ui: &mut Ui, state: &State, moment: &Moment, node: NodeId, commands:
     title(ui, format!("Node {}", node.0), palette);
     let mesh = &moment.mesh;
     let Some(told) = NodeFacts::of(mesh, node) else { return gone(ui, "The node", palette) };
-    let place = if told.is_fixed { "on the boundary: fixed" } else { "free: may be moved" };
+    let place = match (told.is_hard, told.is_fixed) {
+        (true, _) => "a hard point: fixed",
+        (false, true) => "on the boundary: fixed",
+        (false, false) => "free: may be moved",
+    };
     ui.label(note(format!("{place}  ·  {}", words::counted(told.valence as u64, "edge")), palette));
     offered(ui, state, Outlined::Node(node), commands);
     let is_plane = mesh.embedding().is_none();
