@@ -307,6 +307,33 @@ fn a_small_hole_keeps_its_shape_whatever_the_sizes_are() {
 }
 
 #[test]
+fn chords_keep_their_distance_where_sizes_vary_and_curves_that_do_already_are_divided_by_sizes_alone() {
+    let with_sizes = |h: &str, keys: &str| {
+        let text = PLATE.replace("kind = \"uniform\"\n    h = 0.15", &format!("kind = \"formula\"\n    h1 = \"{h}\""));
+        let text = text.replace("version = 1", &format!("version = 1\n{keys}"));
+        assert!(text.contains(h));
+        converted(&Case::parse(&text, "plate", "plate.toml", Path::new("")).unwrap())
+    };
+    let middle = DVec3::new(0.6, 0.5, 0.0);
+    let mut shaped = 0;
+    for chord in [0.1, 0.03] {
+        for growth in [0.3, 0.8, 2.0, 6.0] {
+            let (done, quads) = with_sizes(&format!("0.03 + {growth}*abs(x - 0.4)"), &format!("chord = {chord}"));
+            shaped += usize::from(done.repairs.iter().any(|told| told.starts_with("1 curve was divided more finely")));
+            let ends = quads.lines.iter().map(|line| line.map(|k| quads.points[k as usize]));
+            let on_hole = ends.filter(|ends| ends.iter().all(|p| p.distance(middle) < 0.2001));
+            let off = on_hole.map(|[a, b]| 1.0 - a.midpoint(b).distance(middle) / 0.2).fold(0.0, f64::max);
+            assert!(off > 0.0 && off < 1.02 * chord, "{chord} {growth}: {off}");
+        }
+    }
+    assert!(shaped > 2, "{shaped}");
+    let fine = |keys: &str| with_sizes("0.04 + 0.05*abs(x - 0.4)", keys);
+    let (done, quads) = fine("");
+    assert!(done.repairs.is_empty(), "{:?}", done.repairs);
+    assert_eq!(quads, fine("chord = 1\nleast_segments = 3").1);
+}
+
+#[test]
 fn the_hole_of_a_flat_mesh_keeps_its_shape_to_a_tenth_of_its_radius() {
     let plain = ImportOptions::default();
     let sized = ImportOptions { mesh_size: Some(15.0), curvature: Some(0.01), ..ImportOptions::default() };

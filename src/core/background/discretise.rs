@@ -5,11 +5,11 @@ mod hard;
 
 use glam::{DVec2, DVec3};
 
-use super::length::{Piece, give, measure, share_out};
+use super::length::{Along, Piece, give, measure, share_out};
 use crate::core::fault::Fault;
 use crate::core::geometry::assembly::{loop_name, placed};
 use crate::core::geometry::curve::distance_to_segment;
-use crate::core::geometry::{CurveId, DirectedCurve, Domain, DomainCurve};
+use crate::core::geometry::{CurveId, DirectedCurve, Domain, DomainCurve, Turning};
 use crate::core::kernel::{DisjointSets, parity};
 use crate::core::metric::MetricSource;
 
@@ -42,6 +42,8 @@ pub struct Division<'a> {
     metric: &'a dyn MetricSource,
     /// The smooth pieces of each curve, between its corners; empty for an image that follows another.
     pieces: Vec<Vec<Piece>>,
+    /// For each curve, whether it is divided by its turning too, because sizes alone would lose its shape.
+    turns: Vec<bool>,
     /// The number of curves with more segments than the sizes ask for, to keep their shape.
     shaped: usize,
 }
@@ -60,31 +62,27 @@ impl<'a> Division<'a> {
     /// # Errors
     /// If the metric fails, sizes are far too small, or a fixed number is less than the number of pieces.
     pub fn measure(domain: &'a Domain, metric: &'a dyn MetricSource) -> Result<Self, Fault> {
-        let mut division = Division { domain, metric, pieces: Vec::with_capacity(domain.curves.len()), shaped: 0 };
+        let curves = domain.curves.len();
+        let mut division =
+            Division { domain, metric, pieces: Vec::with_capacity(curves), turns: vec![false; curves], shaped: 0 };
         let mut total = 0.0;
         for (id, curve) in domain.curves.iter().enumerate() {
             if curve.first.index() != id {
                 division.pieces.push(Vec::new());
                 continue;
             }
-            let mut pieces = measure(&domain.images(curve.first), metric, &hard::parameters(domain, curve.first))?;
+            let along = division.along(curve);
+            let mut pieces = measure(&along, &hard::parameters(domain, curve.first))?;
             let length: f64 = curve.segments.map_or_else(|| pieces.iter().map(Piece::length).sum(), f64::from);
             total += length;
-            if total > MOST_SEGMENTS {
-                let fault = Fault::new(format!("The curve \"{}\" would get {length:.3e} segments", curve.name));
-                return Err(placed(fault.remedy("Increase the sizes along it, or give fewer segments"), &curve.place));
-            }
+            bearable(curve, length, total)?;
             match curve.segments {
                 None => {
-                    for piece in &mut pieces {
-                        piece.segments = (piece.length().round() as u32).max(piece.least);
+                    pieces.iter_mut().for_each(|piece| piece.divide(&along));
+                    give_least(&mut pieces, if domain.is_closed(curve.first) { 3 } else { 1 });
+                    if let Some(turning) = &curve.turning {
+                        division.shape(curve, turning, &mut pieces)?;
                     }
-                    let (least, few) = (division.least(curve), pieces.iter().map(|p| p.segments).sum::<u32>());
-                    if few < least {
-                        give(&mut pieces, least - few);
-                    }
-                    let all: u32 = pieces.iter().map(|p| p.segments).sum();
-                    division.shaped += usize::from(all > by_sizes(domain, curve, metric, all)?);
                 }
                 Some(n) => {
                     if (n as usize) < pieces.len() {
@@ -102,6 +100,34 @@ impl<'a> Division<'a> {
             division.pieces.push(pieces);
         }
         Ok(division)
+    }
+
+    /// What is measured along a curve.
+    fn along(&self, curve: &'a DomainCurve) -> Along<'a> {
+        let turning = curve.turning.as_deref().filter(|_| self.turns[curve.first.index()]);
+        Along { images: self.domain.images(curve.first), metric: self.metric, turning }
+    }
+
+    /// Keeps the shape of a curve that is divided by its sizes: by a few segments more, or else by its turning.
+    fn shape(&mut self, curve: &'a DomainCurve, turning: &Turning, pieces: &mut Vec<Piece>) -> Result<(), Fault> {
+        let number = |pieces: &[Piece]| pieces.iter().map(|piece| piece.segments).sum::<u32>();
+        let by_sizes = number(pieces);
+        give_least(pieces, turning.least);
+        let (along, mut keeps) = (self.along(curve), true);
+        for piece in pieces.iter_mut() {
+            keeps &= piece.keeps_shape(&along, turning)?;
+        }
+        if !keeps {
+            self.turns[curve.first.index()] = true;
+            let along = self.along(curve);
+            *pieces = measure(&along, &hard::parameters(self.domain, curve.first))?;
+            let length = pieces.iter().map(Piece::length).sum();
+            bearable(curve, length, length)?;
+            pieces.iter_mut().for_each(|piece| piece.divide(&along));
+            give_least(pieces, turning.least);
+        }
+        self.shaped += usize::from(number(pieces) > by_sizes || !keeps);
+        Ok(())
     }
 
     /// The number of segments of a curve.
@@ -347,9 +373,9 @@ impl<'a> Division<'a> {
             let is_first = curve.first.index() == c;
             if is_first {
                 parameters.clear();
-                let (pieces, images) = (&self.pieces[c], self.domain.images(curve.first));
+                let (pieces, along) = (&self.pieces[c], self.along(curve));
                 for (i, piece) in pieces.iter().enumerate() {
-                    parameters.extend(piece.divisions(&images, self.metric)?);
+                    parameters.extend(piece.divisions(&along)?);
                     if i + 1 < pieces.len() {
                         parameters.push(piece.end());
                     }
@@ -375,18 +401,19 @@ impl<'a> Division<'a> {
     }
 }
 
-/// The number of segments that the sizes alone ask for on a curve that is to have `all`.
-fn by_sizes(domain: &Domain, curve: &DomainCurve, metric: &dyn MetricSource, all: u32) -> Result<u32, Fault> {
-    // Most curves turn too little for their shape to matter.
-    match &curve.turning {
-        Some(turning) if turning.least >= all || 2.0 * turning.between(0.0, 1.0) > f64::from(all) => {}
-        _ => return Ok(all),
+/// Refuses a curve that is this long, where this many segments on all curves are too many.
+fn bearable(curve: &DomainCurve, length: f64, total: f64) -> Result<(), Fault> {
+    if total <= MOST_SEGMENTS {
+        return Ok(());
     }
-    let plain: Vec<DomainCurve> =
-        domain.images(curve.first).into_iter().map(|image| DomainCurve { turning: None, ..image.clone() }).collect();
-    let pieces = measure(&plain.iter().collect::<Vec<_>>(), metric, &hard::parameters(domain, curve.first))?;
-    let closed = if domain.is_closed(curve.first) { 3 } else { 1 };
-    Ok(pieces.iter().map(|piece| (piece.length().round() as u32).max(1)).sum::<u32>().max(closed))
+    let fault = Fault::new(format!("The curve \"{}\" would get {length:.3e} segments", curve.name));
+    Err(placed(fault.remedy("Increase the sizes along it, or give fewer segments"), &curve.place))
+}
+
+/// Gives pieces so many segments that they have at least this number together.
+fn give_least(pieces: &mut [Piece], least: u32) {
+    let few: u32 = pieces.iter().map(|piece| piece.segments).sum();
+    give(pieces, least.saturating_sub(few));
 }
 
 #[cfg(test)]

@@ -5,13 +5,23 @@ use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
 use crate::core::fault::Fault;
-use crate::core::geometry::DomainCurve;
 use crate::core::geometry::assembly::placed;
+use crate::core::geometry::{DomainCurve, Turning};
 use crate::core::kernel::decimal::point_text;
 use crate::core::metric::MetricSource;
 
 /// The shape asks for no segment more because of rounding.
 const ROUNDING: f64 = 1e-6;
+
+/// What is measured along a curve.
+pub struct Along<'a> {
+    /// The images of the curve in the plane: one, except on surfaces.
+    pub images: Vec<&'a DomainCurve>,
+    /// The sizes.
+    pub metric: &'a dyn MetricSource,
+    /// Where sizes alone would lose its shape: how it turns, which is a length too.
+    pub turning: Option<&'a Turning>,
+}
 
 /// A piece of a curve between two corners.
 pub struct Piece {
@@ -64,7 +74,7 @@ impl Piece {
     ///
     /// # Errors
     /// If the metric fails.
-    pub fn divisions(&self, images: &[&DomainCurve], metric: &dyn MetricSource) -> Result<Vec<f64>, Fault> {
+    pub fn divisions(&self, along: &Along<'_>) -> Result<Vec<f64>, Fault> {
         let mut at = 0;
         (1..self.segments)
             .map(|k| {
@@ -72,20 +82,51 @@ impl Piece {
                 while at + 2 < self.table.len() && self.table[at + 1].1 <= target {
                     at += 1;
                 }
-                parameter(images, metric, [self.table[at], self.table[at + 1]], target, 1e-7 * self.segment_length())
+                parameter(along, [self.table[at], self.table[at + 1]], target, 1e-7 * self.segment_length())
             })
             .collect()
     }
+
+    /// Whether its segments keep the shape of its curve, which turns like this. Notes the number that would.
+    ///
+    /// # Errors
+    /// If the metric fails.
+    pub fn keeps_shape(&mut self, along: &Along<'_>, turning: &Turning) -> Result<bool, Fault> {
+        let (start, end) = (self.table[0].0, self.end());
+        let asked = turning.between(start, end);
+        // One segment, or segments of equal turning, would do.
+        self.least = at_least(asked);
+        if asked <= 1.0 {
+            return Ok(true);
+        }
+        let places = [vec![start], self.divisions(along)?, vec![end]].concat();
+        let most = places.windows(2).map(|w| turning.between(w[0], w[1])).fold(0.0, f64::max);
+        self.least = self.least.max(at_least(most * f64::from(self.segments)));
+        Ok(self.segments >= self.least)
+    }
+
+    /// Gives it the number of segments closest to its length; by turning, no longer ones.
+    pub fn divide(&mut self, along: &Along<'_>) {
+        self.segments = (self.length().round() as u32).max(1);
+        if along.turning.is_some() {
+            self.least = at_least(self.length());
+            self.segments = self.least;
+        }
+    }
 }
 
-/// The pieces of a curve between its corners and the parameters `besides`, ascending, with one segment each; the curve
-/// is given by all its images in the plane (one, except on surfaces). The tables are bisected until the quadrature
-/// converges.
+/// The least number of segments whose lengths are at most 1.
+fn at_least(length: f64) -> u32 {
+    (length - ROUNDING).ceil().max(1.0) as u32
+}
+
+/// The pieces of a curve between its corners and the parameters `besides`, ascending, with one segment each. The tables
+/// are bisected until the quadrature converges.
 ///
 /// # Errors
 /// If the metric fails or the length overflows.
-pub fn measure(images: &[&DomainCurve], metric: &dyn MetricSource, besides: &[f64]) -> Result<Vec<Piece>, Fault> {
-    let curve = images[0];
+pub fn measure(along: &Along<'_>, besides: &[f64]) -> Result<Vec<Piece>, Fault> {
+    let curve = along.images[0];
     let merged = |own: &[f64]| {
         if besides.is_empty() {
             return own.to_vec();
@@ -110,10 +151,10 @@ pub fn measure(images: &[&DomainCurve], metric: &dyn MetricSource, besides: &[f6
         while let Some((a, b, known, depth)) = stack.pop() {
             let whole = match known {
                 Some(length) => length,
-                None => gauss(images, metric, a, b)?,
+                None => gauss(along, a, b)?,
             };
             let middle = 0.5 * (a + b);
-            let (first, second) = (gauss(images, metric, a, middle)?, gauss(images, metric, middle, b)?);
+            let (first, second) = (gauss(along, a, middle)?, gauss(along, middle, b)?);
             let both = first + second;
             if (both - whole).abs() <= 1e-6 + 1e-7 * both || depth >= 30 || table.len() > 2_000_000 {
                 let before: f64 = table[table.len() - 1].1;
@@ -126,8 +167,7 @@ pub fn measure(images: &[&DomainCurve], metric: &dyn MetricSource, besides: &[f6
         }
         if w[1] >= 1.0 || corners.get(pieces.len()).is_some_and(|&t| t <= w[1]) {
             let table = std::mem::replace(&mut table, vec![(w[1], 0.0)]);
-            let asked = curve.turning.as_ref().map_or(0.0, |turning| turning.between(table[0].0, w[1]));
-            pieces.push(Piece { table, segments: 1, least: (asked - ROUNDING).ceil().max(1.0) as u32 });
+            pieces.push(Piece { table, segments: 1, least: 1 });
         }
     }
     Ok(pieces)
@@ -156,17 +196,11 @@ pub fn share_out(pieces: &mut [Piece], n: u32) {
 }
 
 /// The parameter between two entries of a table at which the length is `target`, by Newton's method within a bracket.
-fn parameter(
-    images: &[&DomainCurve],
-    metric: &dyn MetricSource,
-    [from, to]: [(f64, f64); 2],
-    target: f64,
-    tolerance: f64,
-) -> Result<f64, Fault> {
+fn parameter(along: &Along<'_>, [from, to]: [(f64, f64); 2], target: f64, tolerance: f64) -> Result<f64, Fault> {
     let (mut low, mut high) = (from.0, to.0);
     let mut t = from.0 + (to.0 - from.0) * ((target - from.1) / (to.1 - from.1)).clamp(0.0, 1.0);
     for _ in 0..50 {
-        let off = from.1 + gauss(images, metric, from.0, t)? - target;
+        let off = from.1 + gauss(along, from.0, t)? - target;
         if off.abs() <= tolerance || high - low <= 4.0 * f64::EPSILON * high.abs() {
             break;
         }
@@ -175,15 +209,15 @@ fn parameter(
         } else {
             low = t;
         }
-        let next = t - off / speed(images, metric, t)?;
+        let next = t - off / speed(along, t)?;
         t = if next > low && next < high { next } else { 0.5 * (low + high) };
     }
     Ok(t)
 }
 
-/// Metric length of the derivative at `t`, but no less than the segments that the shape of the curve asks for. It is
-/// the same on every face of the curve, unless sizes depend on the surface: then the smallest sizes count.
-fn speed(images: &[&DomainCurve], metric: &dyn MetricSource, t: f64) -> Result<f64, Fault> {
+/// Metric length of the derivative at `t`, or by turning the segments that the shape asks for, whichever is more. The
+/// length is the same on every face of the curve, unless sizes depend on the surface: then the smallest sizes count.
+fn speed(&Along { ref images, metric, turning }: &Along<'_>, t: f64) -> Result<f64, Fault> {
     let mut fastest = 0.0_f64;
     for curve in images {
         let (p, d) = curve.curve.at(t);
@@ -199,14 +233,14 @@ fn speed(images: &[&DomainCurve], metric: &dyn MetricSource, t: f64) -> Result<f
         }
         fastest = fastest.max(square.max(0.0).sqrt());
     }
-    Ok(images[0].turning.as_ref().map_or(fastest, |turning| fastest.max(turning.rate(t))))
+    Ok(turning.map_or(fastest, |turning| fastest.max(turning.rate(t))))
 }
 
 /// Metric length between two parameters by three-point Gauss quadrature.
-fn gauss(images: &[&DomainCurve], metric: &dyn MetricSource, a: f64, b: f64) -> Result<f64, Fault> {
+fn gauss(along: &Along<'_>, a: f64, b: f64) -> Result<f64, Fault> {
     let (middle, half) = (0.5 * (a + b), 0.5 * (b - a));
     // sqrt(3/5)
     let off = 0.774_596_669_241_483_4 * half;
-    let ends = speed(images, metric, middle - off)? + speed(images, metric, middle + off)?;
-    Ok(half * (5.0 * ends + 8.0 * speed(images, metric, middle)?) / 9.0)
+    let ends = speed(along, middle - off)? + speed(along, middle + off)?;
+    Ok(half * (5.0 * ends + 8.0 * speed(along, middle)?) / 9.0)
 }

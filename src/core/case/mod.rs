@@ -337,11 +337,7 @@ pub(in crate::core) fn set_parameters(parameters: &mut Parameters, table: &Table
 fn chord(table: &Table<'_>) -> Result<f64, Fault> {
     let Some(value) = table.get("chord") else { return Ok(ShapeLimits::CHORD) };
     let chord = value.number()?;
-    if chord > 0.0 && chord <= 1.0 {
-        Ok(chord)
-    } else {
-        Err(value.wrong("greater than 0 and at most 1", "chord = 0.1"))
-    }
+    if (1e-6..=1.0).contains(&chord) { Ok(chord) } else { Err(value.wrong("a number from 1e-6 to 1", "chord = 0.1")) }
 }
 
 fn least_segments(table: &Table<'_>) -> Result<u32, Fault> {

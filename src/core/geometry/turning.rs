@@ -28,6 +28,9 @@ impl Default for ShapeLimits {
     }
 }
 
+/// The smallest chord: below it, rounding would decide the angle.
+const FINEST: f64 = 1e-12;
+
 /// The limits of one curve.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Turning {
@@ -88,7 +91,7 @@ impl Turning {
             });
             0.25 * before + 0.5 * turns[k] + 0.25 * after
         };
-        let angle = |chord: f64| 2.0 * libm::acos(1.0 - chord.clamp(0.0, 1.0));
+        let angle = |chord: f64| 2.0 * libm::acos(1.0 - chord.clamp(FINEST, 1.0));
         let [chord, least] = limits.by_fields;
         let mut table = Vec::with_capacity(n);
         for k in 0..n {
