@@ -1,6 +1,7 @@
 //! The metric: lengths and angles (eqs. 4, 5), and the fields that give a tensor (eqs. 2, 3, 11) at each point.
 
 pub mod measure;
+pub mod straight_quad;
 mod place;
 mod formula;
 mod boundary_layer;

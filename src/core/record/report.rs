@@ -16,7 +16,7 @@ use super::statistics::{Angles, Range, Statistics};
 use crate::core::case::{Case, Parameters};
 use crate::core::convert::Converted;
 use crate::core::fault::Fault;
-use crate::core::kernel::number::{counted, grouped};
+use crate::core::kernel::number::{counted, grouped, size};
 use crate::core::progress::Stage;
 
 /// The report of a conversion.
@@ -34,7 +34,8 @@ pub struct Report {
     pub background_triangles: usize,
     /// Number of faces (regions).
     pub regions: usize,
-    /// Whether the mesh passes all checks: only quadrilaterals, conforming, strictly convex by exact predicates.
+    /// Whether the mesh passes all checks: only quadrilaterals, conforming, strictly convex by exact predicates, and on
+    /// surfaces against the mean normal of each.
     pub valid: bool,
     /// Statistics of the mesh.
     pub mesh: Statistics,
@@ -184,6 +185,18 @@ impl Report {
                     range(metric),
                     range(plane),
                     if self.on_surfaces { "space" } else { "the plane" }
+                ),
+            );
+        }
+        if let Some(verdict) = mesh.verdict {
+            row(
+                "by Verdict",
+                format!(
+                    "scaled Jacobian at least {:.3}, aspect ratio at most {}, skew at most {:.3}, warpage at least {:.3}",
+                    verdict.scaled_jacobian.min,
+                    size(verdict.aspect_ratio.max),
+                    verdict.skew.max,
+                    verdict.warpage.min
                 ),
             );
         }
@@ -417,6 +430,10 @@ mod tests {
                 "jacobian.mean" => ("/mesh/metric_scaled_jacobian/mean", 1.0),
                 "space.jacobian.min" => ("/mesh/physical_scaled_jacobian/min", 1.0),
                 "space.jacobian.mean" => ("/mesh/physical_scaled_jacobian/mean", 1.0),
+                "verdict.jacobian.min" => ("/mesh/verdict/scaled_jacobian/min", 1.0),
+                "verdict.aspect.max" => ("/mesh/verdict/aspect_ratio/max", 1.0),
+                "verdict.skew.max" => ("/mesh/verdict/skew/max", 1.0),
+                "verdict.warpage.min" => ("/mesh/verdict/warpage/min", 1.0),
                 "last_resort" => ("/last_resort/quads", 1.0),
                 "steps" => ("/events/front_step", 1.0),
                 "rolled_back" => ("/events/front_rolled_back", 1.0),
