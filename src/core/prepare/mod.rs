@@ -2,6 +2,7 @@
 
 mod graded;
 mod layers;
+mod need;
 mod of_domain;
 mod of_elements;
 mod of_mesh;

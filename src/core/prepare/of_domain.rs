@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::graded::bounded;
+use super::need::allow_sizes;
 use super::{Background, layers};
 use crate::core::background::adapt::adapt;
 use crate::core::background::triangulate::divide_and_triangulate;
@@ -10,8 +11,7 @@ use crate::core::background::{Adapted, DividedDomain};
 use crate::core::case::Case;
 use crate::core::fault::{Fault, FaultKind};
 use crate::core::geometry::Domain;
-use crate::core::mesh::{Embedding, Mesh, Named, Names, PointId, TriangleSet};
-use crate::core::metric::measure::triangle_area;
+use crate::core::mesh::{Embedding, Mesh, Named, Names, PointId};
 use crate::core::metric::{Field, MetricSource, Sizing};
 use crate::core::progress::{Stage, Watch};
 
@@ -76,7 +76,7 @@ fn adapted_mesh(case: &Case, domain: &Domain, sizing: &Sizing, watch: &mut dyn W
     watch.tell(Stage::Triangulate, 0, 0);
     let (divided, set) = divide_and_triangulate(domain, sizing)?;
     let metric = set.uv.iter().map(|&uv| sizing.metric(uv)).collect::<Result<_, _>>()?;
-    check_size(&set, sizing, case.parameters.max_quads)?;
+    allow_sizes(&set, sizing, &case.parameters, watch)?;
     watch.tell(Stage::Adapt, 0, 0);
     // A unit mesh has about 2.3 triangles for each quadrilateral that the metric asks for (docs/algorithm.md,
     // "Adaptation to the metric").
@@ -87,21 +87,4 @@ fn adapted_mesh(case: &Case, domain: &Domain, sizing: &Sizing, watch: &mut dyn W
     }
     let (mesh, adapted) = adapt(mesh, sizing, most, watch)?;
     Ok(AdaptedMesh { mesh, adapted, divided, lines: set.lines })
-}
-
-/// Refuses sizes that ask for far more quadrilaterals than are allowed before any memory is spent on them. The count is
-/// the metric area (docs/algorithm.md, "Adaptation to the metric"), one place a triangle of the boundary's
-/// triangulation: rough, so that only what is beyond doubt is refused here. The adaptation itself holds the bound.
-fn check_size(set: &TriangleSet, sizing: &Sizing, max_quads: u64) -> Result<(), Fault> {
-    let mut quads = 0.0;
-    for triangle in &set.triangles {
-        let [a, b, c] = triangle.map(|n| set.uv[n as usize]);
-        quads += triangle_area(&sizing.metric((a + b + c) / 3.0)?, a, b, c);
-    }
-    if quads <= 4.0 * max_quads as f64 {
-        return Ok(());
-    }
-    Err(Fault::new(format!("The metric requires about {quads:.1e} quadrilaterals, but max_quads is {max_quads}"))
-        .of_kind(FaultKind::Limit)
-        .remedy("Increase the sizes or max_quads"))
 }

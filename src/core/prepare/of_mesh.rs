@@ -6,6 +6,7 @@ use glam::DVec2;
 
 use super::Background;
 use super::graded::bounded;
+use super::need::allow_triangles;
 use super::of_domain::{FileLines, from_domain};
 use crate::core::background::Adapted;
 use crate::core::background::implied_metric::implied_metric;
@@ -47,6 +48,7 @@ pub(super) fn from_mesh(
     }
     let imported = import(&file, case.split_odd).map_err(|fault| fault.at(place.clone()))?;
     let set = &imported.set;
+    allow_triangles(set.triangles.len(), watch)?;
     let mut fields = Vec::new();
     for spec in &case.fields {
         fields.push(Field::compile(spec, &|_| None)?);
@@ -117,6 +119,7 @@ fn from_surface(
     let faces = surface.regions.clone();
     let lines = FileLines { names: lines, of_curve: surface.lines.clone() };
     let made = if converts {
+        allow_triangles(mesh.triangles.len(), watch)?;
         from_own_triangles(case, &mesh, &surface, fields, lines, &mut repairs)
     } else {
         from_domain(case, surface.domain, Some(fields), lines, watch)
