@@ -4,7 +4,7 @@
 
 use quadfront::core::case::{Parameters, built_in};
 use quadfront::core::convert::conversion::convert;
-use quadfront::core::fault::Fault;
+use quadfront::core::fault::{Fault, FaultKind};
 use quadfront::core::progress::{Need, Stage, Watch};
 use quadfront::core::record::Export;
 
@@ -50,7 +50,8 @@ fn what_a_watch_does_not_allow_is_not_begun() {
     let mut case = built_in::named("uniform").unwrap().unwrap();
     case.parameters = Parameters { size_scale: 0.02, ..case.parameters };
     let mut keeper = Keeper::new(false);
-    assert_eq!(convert(&case, &mut keeper).unwrap_err(), Fault::new("not here"));
+    let refused = Fault::new("not here").of_kind(FaultKind::Limit);
+    assert_eq!(convert(&case, &mut keeper).unwrap_err(), refused);
     assert!(!keeper.stages.contains(&Stage::Adapt));
     let [need] = keeper.needs[..] else { panic!("{:?}", keeper.needs) };
     assert!((need.quads / 1e6 - 1.0).abs() < 0.01, "{need:?}");

@@ -9,12 +9,13 @@ use crate::core::metric::measure::triangle_area;
 use crate::core::metric::{MetricSource, Sizing};
 use crate::core::progress::{Need, Watch};
 
-/// Places at which the metric is looked at, all over the triangles, and the most where it changes.
-const PLACES: [usize; 2] = [2_000, 50_000];
-/// A triangle is divided for the integral until its quarters together differ from it by at most this part.
+/// Parts, all about as large, into which the triangles are divided first.
+const PARTS: usize = 1_000;
+/// Parts that are divided again are those that differ from their halves most, until all together differ by this part of
+/// the whole.
 const EXACT: f64 = 0.1;
-/// How often a triangle is divided at most.
-const DEEPEST: u32 = 12;
+/// How often a part is halved at most, and how many are.
+const HALVED: [usize; 2] = [40, 10_000];
 /// Triangles of a unit mesh for each quadrilateral that comes of them.
 const TRIANGLES_PER_QUAD: f64 = 2.4;
 
@@ -36,7 +37,7 @@ pub(super) fn allow_sizes(
         return Err(Fault::new(fault).of_kind(FaultKind::Limit).remedy("Increase the sizes or max_quads"));
     }
     // The adaptation makes no more than max_quads.
-    watch.allow(&Need::of(quads.min(max_quads as f64), Some(parameters.size_scale)))
+    allow(Need::of(quads.min(max_quads as f64), Some(parameters.size_scale)), watch)
 }
 
 /// Whether the watch allows what so many given triangles need.
@@ -44,45 +45,81 @@ pub(super) fn allow_sizes(
 /// # Errors
 /// The watch's own fault.
 pub(super) fn allow_triangles(triangles: usize, watch: &mut dyn Watch) -> Result<(), Fault> {
-    watch.allow(&Need::of(triangles as f64 / TRIANGLES_PER_QUAD, None))
+    allow(Need::of(triangles as f64 / TRIANGLES_PER_QUAD, None), watch)
+}
+
+fn allow(need: Need, watch: &mut dyn Watch) -> Result<(), Fault> {
+    watch.allow(&need).map_err(|fault| fault.of_kind(FaultKind::Limit))
 }
 
 /// The area of triangles in a metric: about the number of quadrilaterals that it asks for (docs/algorithm.md,
 /// "Adaptation to the metric"). A place where the metric fails counts nothing: who comes there says so.
 fn metric_area(set: &TriangleSet, sizing: &Sizing) -> f64 {
-    let corners = |triangle: &[u32; 3]| triangle.map(|n| set.uv[n as usize]);
-    let area = |[a, b, c]: [DVec2; 3]| 0.5 * (b - a).perp_dot(c - a).abs();
-    let all: f64 = set.triangles.iter().map(|triangle| area(corners(triangle))).sum();
-    let mut left = PLACES[1];
-    let mut sum = 0.0;
-    for triangle in &set.triangles {
-        let p = corners(triangle);
-        // Quarters of quarters, until there are as many places as the triangle's part of the whole asks for.
-        let places = PLACES[0] as f64 * area(p) / all.max(f64::MIN_POSITIVE);
-        let least = (libm::log2(places.max(1.0)) / 2.0).ceil() as u32;
-        sum += integral(sizing, p, measured(sizing, p), least, DEEPEST, &mut left);
+    let of = |triangle: &[u32; 3]| Part::of(sizing, triangle.map(|n| set.uv[n as usize]));
+    let mut large: Vec<Part> = set.triangles.iter().map(of).collect();
+    let most = large.iter().map(Part::area).sum::<f64>() / PARTS as f64;
+    // No part becomes smaller than half of that, so that this count suffices.
+    let enough = large.len() + 2 * PARTS;
+    let mut parts = Vec::new();
+    while let Some(part) = large.pop() {
+        let halves = part.halves(sizing);
+        if part.area() > most && parts.len() + large.len() < enough {
+            large.extend(halves);
+        } else {
+            parts.push((part, halves));
+        }
     }
-    sum
+    let area = |halves: &[Part; 2]| halves[0].quads + halves[1].quads;
+    let mut left = HALVED[1];
+    for _ in 0..HALVED[0] {
+        let sum: f64 = parts.iter().map(|(_, halves)| area(halves)).sum();
+        let (exact, before) = (EXACT * sum / parts.len() as f64, left);
+        let mut finer = Vec::with_capacity(2 * parts.len());
+        for (part, halves) in parts {
+            if left > 0 && (area(&halves) - part.quads).abs() > exact {
+                left -= 1;
+                finer.extend(halves.map(|half| (half, half.halves(sizing))));
+            } else {
+                finer.push((part, halves));
+            }
+        }
+        parts = finer;
+        if left == 0 || left == before {
+            break;
+        }
+    }
+    parts.iter().map(|(_, halves)| area(halves)).sum()
 }
 
-/// The metric area of a triangle by its middle.
-fn measured(sizing: &Sizing, [a, b, c]: [DVec2; 3]) -> f64 {
-    sizing.metric((a + b + c) / 3.0).map_or(0.0, |metric| triangle_area(&metric, a, b, c))
+/// A part of a triangle.
+#[derive(Clone, Copy)]
+struct Part {
+    /// Its corners; the side between the first two is the longest in the metric, or where that fails the oldest.
+    corners: [DVec2; 3],
+    /// Its area in the metric at its middle.
+    quads: f64,
 }
 
-/// The metric area of a triangle, which is `whole` by its middle: by its quarters, at least `least` times.
-fn integral(sizing: &Sizing, [a, b, c]: [DVec2; 3], whole: f64, least: u32, most: u32, left: &mut usize) -> f64 {
-    if most == 0 || *left < 4 {
-        return whole;
+impl Part {
+    fn of(sizing: &Sizing, corners: [DVec2; 3]) -> Part {
+        let [a, b, c] = corners;
+        let Ok(metric) = sizing.metric((a + b + c) / 3.0) else { return Part { corners, quads: 0.0 } };
+        let turned = [[a, b, c], [b, c, a], [c, a, b]];
+        let side = |[from, to, _]: &[DVec2; 3]| metric.norm2(*to - *from);
+        let corners = turned.into_iter().max_by(|a, b| side(a).total_cmp(&side(b))).unwrap_or(corners);
+        Part { corners, quads: triangle_area(&metric, a, b, c) }
     }
-    *left -= 4;
-    let [d, e, f] = [a.midpoint(b), b.midpoint(c), c.midpoint(a)];
-    let quarters = [[a, d, f], [d, b, e], [f, e, c], [d, e, f]];
-    let parts = quarters.map(|quarter| measured(sizing, quarter));
-    let sum: f64 = parts.iter().sum();
-    if least == 0 && (sum - whole).abs() <= EXACT * sum {
-        return sum;
+
+    /// Its area in the plane.
+    fn area(&self) -> f64 {
+        let [a, b, c] = self.corners;
+        0.5 * (b - a).perp_dot(c - a).abs()
     }
-    let deeper = quarters.into_iter().zip(parts);
-    deeper.map(|(quarter, part)| integral(sizing, quarter, part, least.saturating_sub(1), most - 1, left)).sum()
+
+    /// Its halves, on both sides of the line from the middle of the longest side.
+    fn halves(&self, sizing: &Sizing) -> [Part; 2] {
+        let [a, b, c] = self.corners;
+        let middle = a.midpoint(b);
+        [[c, a, middle], [b, c, middle]].map(|half| Part::of(sizing, half))
+    }
 }

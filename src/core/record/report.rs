@@ -192,7 +192,8 @@ impl Report {
             row(
                 "by Verdict",
                 format!(
-                    "scaled Jacobian at least {:.3}, aspect ratio at most {}, skew at most {:.3}, warpage at least {:.3}",
+                    "scaled Jacobian at least {:.3}, aspect ratio at most {}, skew at most {:.3}, \
+                     warpage at least {:.3}",
                     verdict.scaled_jacobian.min,
                     size(verdict.aspect_ratio.max),
                     verdict.skew.max,

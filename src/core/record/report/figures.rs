@@ -79,10 +79,10 @@ figures! {
     "jacobian.mean", "", More, "mean scaled Jacobian, metric" => |r| mean(r.mesh.metric_scaled_jacobian);
     "space.jacobian.min", "", More, "least scaled Jacobian, in space" => |r| least(r.mesh.physical_scaled_jacobian);
     "space.jacobian.mean", "", More, "mean scaled Jacobian, in space" => |r| mean(r.mesh.physical_scaled_jacobian);
-    "verdict.jacobian.min", "", More, "least scaled Jacobian by Verdict" => |r| verdict(r).map(|v| v.scaled_jacobian.min);
-    "verdict.aspect.max", "", Less, "greatest aspect ratio by Verdict" => |r| verdict(r).map(|v| v.aspect_ratio.max);
-    "verdict.skew.max", "", Less, "greatest skew by Verdict" => |r| verdict(r).map(|v| v.skew.max);
-    "verdict.warpage.min", "", More, "least warpage by Verdict, 1 where flat" => |r| verdict(r).map(|v| v.warpage.min);
+    "verdict.jacobian.min", "", More, "least scaled Jacobian, Verdict" => |r| verdict(r).map(|v| v.scaled_jacobian.min);
+    "verdict.aspect.max", "", Less, "greatest aspect ratio, Verdict" => |r| verdict(r).map(|v| v.aspect_ratio.max);
+    "verdict.skew.max", "", Less, "greatest skew, Verdict" => |r| verdict(r).map(|v| v.skew.max);
+    "verdict.warpage.min", "", More, "least warpage, Verdict, 1 where flat" => |r| verdict(r).map(|v| v.warpage.min);
     "last_resort", "", Less, "quadrilaterals made by the last resort" => |r| count(r.last_resort.quads);
     "steps", "", Less, "steps of the front" => |r| event(r, "front_step");
     "rolled_back", "", Less, "attempts rolled back" => |r| event(r, "front_rolled_back");

@@ -1,5 +1,5 @@
-//! The shape of each element: area, orientation, convexity. In space a quadrilateral is convex if every corner turns the
-//! way of its own mean normal: its Jacobians there are positive, as solvers need it.
+//! The shape of each element: area, orientation, convexity. In space a quadrilateral is convex if every corner turns
+//! the way of its own mean normal: its Jacobians there are positive, as solvers need it.
 
 use glam::{DVec2, DVec3};
 
