@@ -92,4 +92,10 @@ impl Mesh {
     pub fn least_sine(&self, e: ElementId, near: f64) -> f64 {
         self.corners_in_space(e).least_sine(self.embedding().map(|embedding| &**embedding), near, f64::NEG_INFINITY)
     }
+
+    /// The least sine of an element's corners in space relative to the surface normal alone.
+    pub fn least_surface_sine(&self, e: ElementId) -> f64 {
+        let embedding = self.embedding().map(|embedding| &**embedding);
+        self.corners_in_space(e).surface_sines(embedding).fold(f64::INFINITY, f64::min)
+    }
 }
