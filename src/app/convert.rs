@@ -94,7 +94,8 @@ pub(super) fn background(arguments: &BackgroundArguments) -> Result<(), Fault> {
     }
     let timing = progress.finish();
     if !source.quiet {
-        messages.print(&background_summary(&input.run.case, &triangles.statistics, &triangles.repairs, &timing));
+        let (statistics, repairs, spacing) = (&triangles.statistics, &triangles.repairs, &triangles.spacing);
+        messages.print(&background_summary(&input.run.case, statistics, repairs, spacing, &timing));
         if let Some(lack) = mesh_target.as_ref().and_then(MeshTarget::lacks_metric) {
             Stream::Error.print(&lack);
         }

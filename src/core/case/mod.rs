@@ -84,6 +84,9 @@ pub struct Case {
     pub fields: Vec<FieldSpec>,
     /// Bound of the metric's gradation (docs/algorithm.md, "Gradation"), greater than 1; `None`: not bounded.
     pub gradation: Option<f64>,
+    /// The distance up to which ends of plane curves and points of their polylines are one; by default a billionth of
+    /// the domain.
+    pub tolerance: Option<f64>,
     /// Whether a boundary with a fixed odd number of segments may get one more; otherwise it is rejected.
     pub split_odd: bool,
     /// The text of the file, for reports; empty for a mesh without a case file.
@@ -140,6 +143,8 @@ impl Case {
             "notes",
             "parameters",
             "gradation",
+            "corner_angle",
+            "tolerance",
             "split_odd",
             "surface",
             "curve",
@@ -168,6 +173,7 @@ impl Case {
             notes: word("notes")?.unwrap_or_default().trim().to_owned(),
             parameters: parameters(&table)?,
             gradation: gradation(&table)?,
+            tolerance: table.get("tolerance").map(|value| value.positive()).transpose()?,
             split_odd: table.get("split_odd").map_or(Ok(false), |v| v.flag())?,
             domain,
             fields,
@@ -208,6 +214,7 @@ impl Case {
             domain: DomainSource::Mesh { source, taking: Taking::default() },
             fields: Vec::new(),
             gradation: None,
+            tolerance: None,
             split_odd: false,
             text: String::new(),
         }
@@ -241,11 +248,20 @@ fn domain(table: &Table<'_>, folder: &Path) -> Result<DomainSource, Fault> {
             Err(fault.remedy(format!("Remove either {own} or {named}")))
         }
     };
+    let only_curves = |own: &str, keys: &[&str]| match keys.iter().find_map(|key| table.get(key)) {
+        None => Ok(()),
+        Some(value) => {
+            let fault = value.fault(format!("The case has a {own} and a {}", value.key()));
+            Err(fault.remedy(format!("Remove {}: it is for curves in the plane", value.key())))
+        }
+    };
     if let Some(value) = table.get("background") {
+        only_curves("background", &["corner_angle", "tolerance"])?;
         alone("background", &["surface", "curve", "face", "mesh", "sol"])?;
         return elements::elements(&value.table()?);
     }
     if let Some(path) = file("mesh")? {
+        only_curves("mesh", &["corner_angle", "tolerance"])?;
         alone("mesh", &["surface", "curve", "face"])?;
         let source = MeshSource::File { path, sol: file("sol")? };
         return Ok(DomainSource::Mesh { source, taking: taking::taking(table)? });
@@ -256,6 +272,7 @@ fn domain(table: &Table<'_>, folder: &Path) -> Result<DomainSource, Fault> {
         }
     }
     if table.get("surface").is_some() {
+        only_curves("surface", &["tolerance"])?;
         let complex = surfaces::complex(table)?;
         if complex.faces.is_empty() {
             return Err(table.fault("The case has no face").remedy("Add [[face]] with a name and a surface"));

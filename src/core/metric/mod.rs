@@ -7,11 +7,15 @@ mod formula;
 mod boundary_layer;
 mod curvature;
 mod table;
+mod forced;
+mod gap;
 mod field;
 mod survey;
 pub(crate) mod gradation;
 
 pub(in crate::core) use curvature::Curvature;
 pub use field::{BadMetric, Field, FieldSpec, MetricSource, Sizing};
+pub use forced::ForcedSide;
+pub use gap::Rungs;
 pub use place::MetricPlace;
 pub use survey::Survey;

@@ -6,10 +6,12 @@ mod need;
 mod of_domain;
 mod of_elements;
 mod of_mesh;
+mod spacing;
 
 use of_domain::{FileLines, from_domain};
 use of_elements::from_elements;
 use of_mesh::from_mesh;
+pub use spacing::{Forced, NarrowGaps, Spacing};
 
 use crate::core::background::Adapted;
 use crate::core::case::{Case, DomainSource};
@@ -35,6 +37,8 @@ pub struct Background {
     pub adapted: Adapted,
     /// Repairs of a given mesh, as readable phrases.
     pub repairs: Vec<String>,
+    /// What the boundary makes of the sizes that are asked for.
+    pub spacing: Spacing,
 }
 
 /// Makes the background mesh of a case.
@@ -51,7 +55,8 @@ pub fn background(case: &Case, watch: &mut dyn Watch) -> Result<Background, Faul
     let whole = |domain| from_domain(case, domain, None, FileLines::default(), watch);
     let (made, kind) = match &case.domain {
         DomainSource::Curves { curves, faces } => {
-            (Domain::build(curves.clone(), faces.clone()).and_then(whole), FaultKind::Geometry)
+            let domain = Domain::build_within(curves.clone(), faces.clone(), case.tolerance);
+            (domain.and_then(whole), FaultKind::Geometry)
         }
         DomainSource::Surfaces(spec) => (complex::build(spec).and_then(whole), FaultKind::Geometry),
         DomainSource::Elements { points, triangles, quads } => {

@@ -4,16 +4,18 @@ use std::sync::Arc;
 
 use super::graded::bounded;
 use super::need::allow_sizes;
+use super::spacing::{Divided, divided};
 use super::{Background, layers};
 use crate::core::background::adapt::adapt;
-use crate::core::background::triangulate::divide_and_triangulate;
-use crate::core::background::{Adapted, DividedDomain};
+use crate::core::background::triangulate::divide_by;
+use crate::core::background::{Adapted, DividedDomain, Division};
 use crate::core::case::Case;
 use crate::core::fault::{Fault, FaultKind};
 use crate::core::geometry::Domain;
 use crate::core::mesh::{Embedding, Mesh, Named, Names, PointId};
 use crate::core::metric::{Field, MetricSource, Sizing};
 use crate::core::progress::{Stage, Watch};
+use crate::core::soup::Repair;
 
 /// Number of points at which the metric is checked first.
 const SURVEYED: usize = 20_000;
@@ -38,10 +40,17 @@ pub(super) fn from_domain(
     sizing.survey(&domain.sample_points(SURVEYED), &|p| domain.inside(p).is_some())?;
     let layered =
         layers::layered_curves(&domain, &case.parameters).map_err(|fault| fault.of_kind(FaultKind::Parameter))?;
-    let mut made = adapted_mesh(case, &domain, &sizing, watch)?;
+    watch.tell(Stage::Triangulate, 0, 0);
+    let first = divided(&domain, &sizing, case.gradation)?;
+    sizing = first.sizing.clone();
+    let (spacing, gaps) = (first.spacing.clone(), first.gaps.clone());
+    let mut made = adapted_mesh(case, &domain, first, watch)?;
     if let Some(beta) = case.gradation {
         sizing = Sizing::new(vec![bounded(&made.mesh, &sizing, beta)?], 1.0).on(atlas);
-        made = adapted_mesh(case, &domain, &sizing, watch)?;
+        watch.tell(Stage::Triangulate, 0, 0);
+        let (divided, set) = divide_by(Division::measure(&domain, &sizing)?.across(&gaps)?)?;
+        let again = Divided { divided, set, sizing: sizing.clone(), spacing: spacing.clone(), gaps };
+        made = adapted_mesh(case, &domain, again, watch)?;
     }
     if let Some(curves) = layered {
         layers::offset_only(&mut made.mesh, &made.divided, &curves, case.parameters.layers);
@@ -51,7 +60,10 @@ pub(super) fn from_domain(
     let on_line = |&(ends, curve): &([PointId; 2], u32)| Some((ends, lines.of_curve.get(curve as usize).copied()??));
     let sides = made.lines.iter().filter_map(on_line).collect();
     let names = Names::of_faces(faces).with_lines(lines.names, sides);
-    Ok(Background { mesh: made.mesh, sizing, names, adapted: made.adapted, repairs: Vec::new() })
+    let mut repairs = Vec::new();
+    Repair::RepeatedPoint.report(domain.merged_points, &mut repairs);
+    Repair::JoinedEnd.report(domain.joined_ends, &mut repairs);
+    Ok(Background { mesh: made.mesh, sizing, names, adapted: made.adapted, repairs, spacing })
 }
 
 /// The lines of the file of a domain.
@@ -72,11 +84,10 @@ struct AdaptedMesh {
     lines: Vec<([PointId; 2], u32)>,
 }
 
-fn adapted_mesh(case: &Case, domain: &Domain, sizing: &Sizing, watch: &mut dyn Watch) -> Result<AdaptedMesh, Fault> {
-    watch.tell(Stage::Triangulate, 0, 0);
-    let (divided, set) = divide_and_triangulate(domain, sizing)?;
+fn adapted_mesh(case: &Case, domain: &Domain, of: Divided, watch: &mut dyn Watch) -> Result<AdaptedMesh, Fault> {
+    let Divided { divided, set, sizing, .. } = of;
     let metric = set.uv.iter().map(|&uv| sizing.metric(uv)).collect::<Result<_, _>>()?;
-    allow_sizes(&set, sizing, &case.parameters, watch)?;
+    allow_sizes(&set, &sizing, &case.parameters, watch)?;
     watch.tell(Stage::Adapt, 0, 0);
     // A unit mesh has about 2.3 triangles for each quadrilateral that the metric asks for (docs/algorithm.md,
     // "Adaptation to the metric").
@@ -85,6 +96,6 @@ fn adapted_mesh(case: &Case, domain: &Domain, sizing: &Sizing, watch: &mut dyn W
     if let Some(spatial) = &domain.spatial {
         mesh.set_embedding(Arc::new(Embedding { atlas: Arc::clone(&spatial.atlas), points: set.xyz }));
     }
-    let (mesh, adapted) = adapt(mesh, sizing, most, watch)?;
+    let (mesh, adapted) = adapt(mesh, &sizing, most, watch)?;
     Ok(AdaptedMesh { mesh, adapted, divided, lines: set.lines })
 }

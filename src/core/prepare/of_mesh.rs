@@ -4,10 +4,10 @@ use std::sync::Arc;
 
 use glam::DVec2;
 
-use super::Background;
 use super::graded::bounded;
 use super::need::allow_triangles;
 use super::of_domain::{FileLines, from_domain};
+use super::{Background, Spacing};
 use crate::core::background::Adapted;
 use crate::core::background::implied_metric::implied_metric;
 use crate::core::background::import::import;
@@ -79,7 +79,14 @@ pub(super) fn from_mesh(
         mesh = meshed(&sizing)?;
     }
     let names = Names::of_faces(imported.regions).with_lines(imported.lines, imported.set.lines);
-    Ok(Background { mesh, sizing, names, adapted: Adapted::default(), repairs: imported.repairs })
+    Ok(Background {
+        mesh,
+        sizing,
+        names,
+        adapted: Adapted::default(),
+        repairs: imported.repairs,
+        spacing: Spacing::default(),
+    })
 }
 
 /// A mesh as a surface without CAD: its shape remeshed, or its own triangles, chart by chart. Sizes are those of the
@@ -158,5 +165,12 @@ fn from_own_triangles(
         mesh = meshed(&sizing)?;
     }
     let names = Names::default().with_lines(lines.names, set.lines);
-    Ok(Background { mesh, sizing, names, adapted: Adapted::default(), repairs: Vec::new() })
+    Ok(Background {
+        mesh,
+        sizing,
+        names,
+        adapted: Adapted::default(),
+        repairs: Vec::new(),
+        spacing: Spacing::default(),
+    })
 }

@@ -10,7 +10,8 @@ use super::search::Search;
 use crate::core::fault::Fault;
 
 /// Keys of a case that have a default.
-pub(super) const OPTIONS: [&str; 6] = ["gradation", "split_odd", "use", "feature_angle", "chart_stretch", "scale"];
+pub(super) const OPTIONS: [&str; 8] =
+    ["gradation", "corner_angle", "tolerance", "split_odd", "use", "feature_angle", "chart_stretch", "scale"];
 
 /// The lists of curves within a face that can be left out one by one.
 const WITHIN: [&str; 3] = ["holes", "cracks", "repeated"];

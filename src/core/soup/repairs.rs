@@ -18,6 +18,8 @@ pub(in crate::core) enum Repair {
     UngroupedLine,
     DividedSegment,
     DividedSide,
+    RepeatedPoint,
+    JoinedEnd,
 }
 
 impl Repair {
@@ -38,6 +40,8 @@ impl Repair {
             Repair::LineOffEdges => ["line on no edge of the mesh", "lines on no edge of the mesh", "ignored"],
             Repair::UngroupedLine => ["ungrouped line inside a region", "ungrouped lines inside regions", "ignored"],
             Repair::DividedSegment => ["boundary segment", "boundary segments", "divided to make triangle counts even"],
+            Repair::RepeatedPoint => ["repeated point of a polyline", "repeated points of polylines", "merged"],
+            Repair::JoinedEnd => ["end of a curve", "ends of curves", "moved to where another one ends"],
             Repair::DividedSide => ["side of a triangle", "sides of triangles", "divided to make counts even"],
         }
     }
