@@ -7,6 +7,7 @@ use std::process::ExitCode;
 use serde::Serialize;
 
 use super::command_line::{CompareArguments, Overrides, Source};
+use super::memory::Beside;
 use super::output::Stream;
 use super::progress::Progress;
 use super::{FALLS_SHORT, input, work};
@@ -88,7 +89,7 @@ pub(super) fn compare(arguments: &CompareArguments) -> Result<ExitCode, Fault> {
     let mut runs = [first.run, second];
     let changes = Overrides { set: with.clone(), paper: *with_paper, ..Overrides::default() };
     changes.apply(&mut runs[1], "--with")?;
-    let mut progress = Progress::new(source.quiet);
+    let mut progress = Progress::new(source.quiet).keeping(Beside::States(2));
     let [mut a, mut b] =
         [History::open(runs[0].clone(), &mut progress)?, History::open(runs[1].clone(), &mut progress)?];
     let found = first_difference([&mut a, &mut b], &mut progress)?;

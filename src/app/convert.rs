@@ -5,6 +5,7 @@ use std::process::ExitCode;
 use super::command_line::{BackgroundArguments, ConvertArguments};
 use super::figure::{self, Figure, FigureOptions, LayerWords};
 use super::input::Until;
+use super::memory::Beside;
 use super::output::{self, MeshTarget, Stream};
 use super::progress::Progress;
 use super::{FALLS_SHORT, complain, input, work};
@@ -35,6 +36,9 @@ pub(super) fn convert(arguments: &ConvertArguments) -> Result<ExitCode, Fault> {
         (None, shown) => shown.and_then(|shown| shown.at.map(|_| Stop::Step(shown.step))),
     };
     let shows_data = mesh_target.as_ref().is_some_and(MeshTarget::shows_data);
+    if shows_data {
+        progress = progress.keeping(Beside::Data);
+    }
     let mut quads = work::convert_writing_events(&input.run, at, arguments.events.as_ref(), shows_data, &mut progress)
         .map_err(|fault| if shown.is_some() { fault.at(source.input.clone()) } else { fault })?;
     progress.tell(Stage::Write, 0, 0);
@@ -90,7 +94,8 @@ pub(super) fn background(arguments: &BackgroundArguments) -> Result<(), Fault> {
     }
     let timing = progress.finish();
     if !source.quiet {
-        messages.print(&background_summary(&input.run.case, &triangles.statistics, &triangles.repairs, &timing));
+        let (statistics, repairs, spacing) = (&triangles.statistics, &triangles.repairs, &triangles.spacing);
+        messages.print(&background_summary(&input.run.case, statistics, repairs, spacing, &timing));
         if let Some(lack) = mesh_target.as_ref().and_then(MeshTarget::lacks_metric) {
             Stream::Error.print(&lack);
         }

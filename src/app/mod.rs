@@ -2,6 +2,7 @@
 
 mod command_line;
 mod input;
+mod memory;
 mod output;
 mod progress;
 mod work;

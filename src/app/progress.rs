@@ -7,8 +7,10 @@ use std::time::Instant;
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 
+use super::memory::{self, Beside};
+use crate::core::fault::Fault;
 use crate::core::kernel::number::grouped;
-use crate::core::progress::{Cancel, Stage, Watch};
+use crate::core::progress::{Cancel, Need, Stage, Watch};
 
 /// The cancellation by Ctrl-C.
 pub(super) static INTERRUPT: LazyLock<Cancel> = LazyLock::new(Cancel::new);
@@ -21,6 +23,7 @@ pub(super) struct Progress {
     bar: ProgressBar,
     times: StageTimes,
     total: u64,
+    beside: Beside,
 }
 
 /// The seconds of each stage, in the order of the work.
@@ -62,7 +65,13 @@ impl Progress {
     pub fn new(quiet: bool) -> Progress {
         let target = if quiet { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() };
         let bar = ProgressBar::with_draw_target(None, target).with_style(style("{msg}"));
-        Progress { bar, times: StageTimes::default(), total: 0 }
+        Progress { bar, times: StageTimes::default(), total: 0, beside: Beside::Nothing }
+    }
+
+    /// Counts what the command keeps beside the mesh, where memory is short.
+    pub fn keeping(mut self, beside: Beside) -> Progress {
+        self.beside = beside;
+        self
     }
 
     /// Clears the line and returns the seconds of each stage, in the order of the work.
@@ -129,6 +138,10 @@ impl Watch for Progress {
 
     fn cancel(&self) -> Cancel {
         INTERRUPT.clone()
+    }
+
+    fn allow(&mut self, need: &Need) -> Result<(), Fault> {
+        memory::allow(need, self.beside)
     }
 }
 

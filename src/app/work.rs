@@ -11,7 +11,7 @@ use crate::core::fault::Fault;
 use crate::core::kernel::number::grouped;
 use crate::core::mesh::{Mesh, Names, Touched};
 use crate::core::metric::Sizing;
-use crate::core::prepare::{self, Background};
+use crate::core::prepare::{self, Background, Spacing};
 use crate::core::progress::{Stage, Watch};
 use crate::core::record::{Export, Measured, Report, Statistics};
 use crate::core::run::explain::{Narrator, beginning, plain};
@@ -37,6 +37,8 @@ pub(super) struct Triangles {
     pub statistics: Statistics,
     /// Repairs made to an imported mesh.
     pub repairs: Vec<String>,
+    /// What the boundary makes of the sizes that are asked for.
+    pub spacing: Spacing,
 }
 
 /// A conversion at its end or at an earlier stop.
@@ -56,7 +58,7 @@ pub(super) struct Quads {
 
 /// Makes the background mesh of a case, with data for viewing where `shows_data`.
 pub(super) fn background(case: &Case, shows_data: bool, watch: &mut dyn Watch) -> Result<Triangles, Fault> {
-    let Background { mesh, sizing, names, repairs, .. } = prepare::background(case, watch)?;
+    let Background { mesh, sizing, names, repairs, spacing, .. } = prepare::background(case, watch)?;
     watch.tell(Stage::Check, 0, 0);
     let seen =
         Seen { mesh: &mesh, parameters: &case.parameters, phase: &Phase::Select, changed: &[], candidates: None };
@@ -69,7 +71,7 @@ pub(super) fn background(case: &Case, shows_data: bool, watch: &mut dyn Watch) -
     } else {
         export.file.metric = Some(export.chart.iter().map(|&p| sizing.metric3_at(p)).collect::<Result<_, _>>()?);
     }
-    Ok(Triangles { frame, file: export.file, statistics, repairs })
+    Ok(Triangles { frame, file: export.file, statistics, repairs, spacing })
 }
 
 /// A line of the file of events: what a step did, and the same in a sentence.

@@ -23,7 +23,7 @@ pub enum FaultKind {
     Mesh,
     /// A parameter is unknown or out of range, or names something that does not exist.
     Parameter,
-    /// The sizes ask for more elements than `max_quads` allows.
+    /// The sizes ask for more elements than `max_quads` allows, or than there is memory for.
     Limit,
     /// Nothing is wrong: the work was told to end ([`Cancel`](super::progress::Cancel)).
     Stopped,

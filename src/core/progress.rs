@@ -1,4 +1,5 @@
-//! Progress and cancellation of long work. `core` has no clock: the watcher measures time.
+//! Progress and cancellation of long work, and what it will need. `core` has no clock and knows no machine: the watcher
+//! measures time, and says whether there is memory enough.
 
 use std::cell::RefCell;
 use std::sync::Arc;
@@ -42,6 +43,62 @@ pub trait Watch {
     /// The handle by which the work can be cancelled; by default, it cannot.
     fn cancel(&self) -> Cancel {
         Cancel::default()
+    }
+
+    /// Called once it is known what the work will need, before the memory is spent; by default, all is allowed.
+    ///
+    /// # Errors
+    /// There is less: the work ends with this fault.
+    fn allow(&mut self, _: &Need) -> Result<(), Fault> {
+        Ok(())
+    }
+}
+
+/// What a conversion will need, as estimated before it begins (docs/algorithm.md, "Adaptation to the metric").
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Need {
+    /// About how many quadrilaterals it will have.
+    pub quads: f64,
+    /// The size scale that gives so many; `None` where the triangles are given, and so does not change them.
+    pub size_scale: Option<f64>,
+}
+
+/// Bytes of any conversion.
+const BYTES: f64 = 24e6;
+/// Bytes for each quadrilateral, at the time when a conversion has most: its triangles, the journal, and lists that
+/// have just grown.
+const BYTES_PER_QUAD: f64 = 1200.0;
+/// Bytes for each quadrilateral where data for viewing are kept too.
+const BYTES_PER_QUAD_WITH_DATA: f64 = 2200.0;
+
+impl Need {
+    /// The need of so many quadrilaterals, with the size scale that asks for them.
+    pub fn of(quads: f64, size_scale: Option<f64>) -> Need {
+        Need { quads, size_scale }
+    }
+
+    /// About how many bytes of memory the conversion takes; `with_data` for viewing (levels and births) it takes more.
+    pub fn bytes(&self, with_data: bool) -> f64 {
+        BYTES + self.quads * Need::per_quad(with_data)
+    }
+
+    /// The least size scale, of three digits, at which a conversion like this one fits into so many bytes; `None` where
+    /// no scale helps. Quadrilaterals are as many as the scale is small, squared.
+    pub fn size_scale_within(&self, bytes: f64, with_data: bool) -> Option<f64> {
+        let quads = (bytes - BYTES) / Need::per_quad(with_data);
+        let scale = self.size_scale? * (self.quads / quads).sqrt();
+        if quads < 1.0 || !scale.is_finite() || scale <= 0.0 {
+            return None;
+        }
+        let digit = libm::pow(10.0, libm::floor(libm::log10(scale)) - 2.0);
+        // The nearest decimal number of three digits that is not below.
+        let rounded = format!("{:.2e}", libm::ceil(scale / digit) * digit);
+        rounded.parse().ok()
+    }
+
+    fn per_quad(with_data: bool) -> f64 {
+        if with_data { BYTES_PER_QUAD_WITH_DATA } else { BYTES_PER_QUAD }
     }
 }
 

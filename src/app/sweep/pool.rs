@@ -5,8 +5,10 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
 use std::time::{Duration, Instant};
 
+use crate::app::memory::{self, Beside};
 use crate::app::work;
-use crate::core::progress::{Cancel, Stage};
+use crate::core::fault::Fault;
+use crate::core::progress::{Cancel, Need, Stage, Watch};
 use crate::core::record::sweep::{Cell, Sweep};
 use crate::core::run::Run;
 
@@ -24,6 +26,25 @@ struct Work {
     /// The place in `missing` of the next cell to convert.
     next: AtomicUsize,
     cancel: Cancel,
+    threads: usize,
+}
+
+/// The watch of one of several conversions at the same time.
+struct Worker {
+    cancel: Cancel,
+    others: usize,
+}
+
+impl Watch for Worker {
+    fn tell(&mut self, _: Stage, _: u64, _: u64) {}
+
+    fn cancel(&self) -> Cancel {
+        self.cancel.clone()
+    }
+
+    fn allow(&mut self, need: &Need) -> Result<(), Fault> {
+        memory::allow(need, Beside::Conversions(self.others))
+    }
 }
 
 /// Converts the cells that a sweep of a run does not have yet, on so many threads. Calls `hear` from this thread with
@@ -38,7 +59,7 @@ pub(in crate::app) fn convert(
     let missing = sweep.missing();
     let threads = threads.clamp(1, missing.len().max(1));
     let (run, sweep, next) = (run.clone(), sweep.clone(), AtomicUsize::new(0));
-    let work = Arc::new(Work { run, sweep, missing, next, cancel: Cancel::new() });
+    let work = Arc::new(Work { run, sweep, missing, next, cancel: Cancel::new(), threads });
     let (sender, receiver) = channel();
     let threads: Vec<_> = (0..threads)
         .filter_map(|_| {
@@ -68,19 +89,23 @@ pub(in crate::app) fn convert(
 impl Work {
     fn convert(&self, sender: &Sender<(usize, Cell)>) {
         while let Some(&cell) = self.missing.get(self.next.fetch_add(1, Ordering::Relaxed)) {
-            let Some(done) = cell_of(&self.sweep.run_of(cell, &self.run), &self.cancel) else { return };
+            let Some(done) = cell_of(&self.sweep.run_of(cell, &self.run), self.worker()) else { return };
             if sender.send((cell, done)).is_err() {
                 return;
             }
         }
     }
+
+    fn worker(&self) -> Worker {
+        Worker { cancel: self.cancel.clone(), others: self.threads - 1 }
+    }
 }
 
 /// What a run ends with; `None` if it is cancelled.
-fn cell_of(run: &Run, cancel: &Cancel) -> Option<Cell> {
-    cancel.check().ok()?;
+fn cell_of(run: &Run, mut worker: Worker) -> Option<Cell> {
+    worker.cancel.check().ok()?;
     let begin = Instant::now();
-    let converted = work::convert(run, None, None, false, &mut cancel.clone());
+    let converted = work::convert(run, None, None, false, &mut worker);
     match converted {
         Ok(mut quads) => Some(match quads.flaw {
             Some(flaw) => Cell::Refused(flaw.to_string()),

@@ -9,11 +9,12 @@ use super::files::free_path;
 use super::session::Wake;
 use super::state::State;
 use crate::app::film::{self, FilmOptions};
+use crate::app::memory::{self, Beside};
 use crate::app::output::Target;
 use crate::app::progress;
 use crate::core::fault::Fault;
 use crate::core::kernel::number::grouped;
-use crate::core::progress::{Cancel, Stage, Watch};
+use crate::core::progress::{Cancel, Need, Stage, Watch};
 use crate::render::film::FilmFormat;
 
 /// The shortest time between two reports of progress.
@@ -206,5 +207,9 @@ impl Watch for Teller {
 
     fn cancel(&self) -> Cancel {
         self.cancel.clone()
+    }
+
+    fn allow(&mut self, need: &Need) -> Result<(), Fault> {
+        memory::allow(need, Beside::States(1))
     }
 }

@@ -6,10 +6,11 @@ use super::command::{Command, Rules};
 use super::session::{Direction, Source, Wake, words_of};
 use super::state::Progress;
 use crate::app::command_line::Overrides;
+use crate::app::memory::{self, Beside};
 use crate::app::progress::StageTimes;
 use crate::core::fault::Fault;
 use crate::core::kernel::worded::worded;
-use crate::core::progress::{Cancel, Stage, Watch};
+use crate::core::progress::{Cancel, Need, Stage, Watch};
 use crate::core::record::Report;
 use crate::core::run::compare::{Did, Difference, FirstDifference, differences, first_difference};
 use crate::core::run::history::BUDGET;
@@ -241,6 +242,10 @@ impl Watch for CompareWatch<'_> {
 
     fn cancel(&self) -> Cancel {
         self.cancel.clone()
+    }
+
+    fn allow(&mut self, need: &Need) -> Result<(), Fault> {
+        memory::allow(need, Beside::States(2))
     }
 }
 

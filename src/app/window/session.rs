@@ -20,13 +20,14 @@ pub use worker::Stops;
 
 use super::import::ImportOptions;
 use super::state::Progress;
+use crate::app::memory::{self, Beside};
 use crate::app::progress;
 use crate::core::convert::{Event, Why};
 use crate::core::fault::Fault;
 use crate::core::lesson::{Decision, Lesson, Scene};
 use crate::core::mesh::{ElementId, NodeId};
 use crate::core::prepare::Background;
-use crate::core::progress::{Cancel, Stage, Watch};
+use crate::core::progress::{Cancel, Need, Stage, Watch};
 use crate::core::question::{Answer, Asked, Drawn, Hint, Judged, Series};
 use crate::core::run::timeline::Tracked;
 use crate::core::run::{
@@ -301,6 +302,10 @@ impl Watch for Voice {
 
     fn cancel(&self) -> Cancel {
         self.cancel.clone()
+    }
+
+    fn allow(&mut self, need: &Need) -> Result<(), Fault> {
+        memory::allow(need, Beside::States(1))
     }
 }
 

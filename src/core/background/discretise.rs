@@ -1,17 +1,26 @@
 //! Division of curves at equal metric arclength, with even loops (docs/algorithm.md, "Curves divided at equal metric
 //! length", "Even loops").
 
+mod gaps;
 mod hard;
+mod loops;
+mod ties;
+
+use std::collections::BTreeMap;
 
 use glam::{DVec2, DVec3};
+
+pub use gaps::Gaps;
+use loops::{Side, walks};
+use ties::Tie;
 
 use super::length::{Along, Piece, give, measure, share_out};
 use crate::core::fault::Fault;
 use crate::core::geometry::assembly::{loop_name, placed};
 use crate::core::geometry::curve::distance_to_segment;
 use crate::core::geometry::{CurveId, DirectedCurve, Domain, DomainCurve, Turning};
-use crate::core::kernel::{DisjointSets, parity};
-use crate::core::metric::MetricSource;
+use crate::core::kernel::DisjointSets;
+use crate::core::metric::{ForcedSide, MetricSource};
 
 /// More segments than this on all curves together are refused, since such sizes must be an error.
 const MOST_SEGMENTS: f64 = 2e7;
@@ -34,14 +43,29 @@ pub struct DividedDomain {
     pub shaped: usize,
     /// Nodes at hard points, each with the number of its point.
     pub hard: Vec<(u32, u32)>,
+    /// The segments that are much shorter than the metric asks for.
+    pub forced: Vec<ForcedSide>,
+    /// Whether there are narrow gaps with nodes that face each other.
+    pub is_facing: bool,
 }
+
+/// A segment shorter than this in the metric forces sizes: less than what rounding and even loops make of a longer
+/// curve.
+pub(super) const SHORT: f64 = 0.4;
+
+/// The number of rounds in which loops are made even and facing pieces equal.
+const EVENINGS: usize = 8;
 
 /// The metric lengths of the curves and their numbers of segments.
 pub struct Division<'a> {
-    domain: &'a Domain,
+    pub(super) domain: &'a Domain,
     metric: &'a dyn MetricSource,
     /// The smooth pieces of each curve, between its corners; empty for an image that follows another.
     pieces: Vec<Vec<Piece>>,
+    /// Pieces that face each other across narrow gaps.
+    ties: Vec<Tie>,
+    /// For a side of a piece along a narrow gap that beyond the gap.
+    across_gaps: BTreeMap<Side, Side>,
     /// For each curve, whether it is divided by its turning too, because sizes alone would lose its shape.
     turns: Vec<bool>,
     /// The number of curves with more segments than the sizes ask for, to keep their shape.
@@ -62,9 +86,9 @@ impl<'a> Division<'a> {
     /// # Errors
     /// If the metric fails, sizes are far too small, or a fixed number is less than the number of pieces.
     pub fn measure(domain: &'a Domain, metric: &'a dyn MetricSource) -> Result<Self, Fault> {
-        let curves = domain.curves.len();
-        let mut division =
-            Division { domain, metric, pieces: Vec::with_capacity(curves), turns: vec![false; curves], shaped: 0 };
+        let (pieces, ties) = (Vec::with_capacity(domain.curves.len()), Vec::new());
+        let turns = vec![false; domain.curves.len()];
+        let mut division = Division { domain, metric, pieces, ties, across_gaps: BTreeMap::new(), turns, shaped: 0 };
         let mut total = 0.0;
         for (id, curve) in domain.curves.iter().enumerate() {
             if curve.first.index() != id {
@@ -141,6 +165,24 @@ impl<'a> Division<'a> {
         curve.turning.as_ref().map_or(closed, |turning| turning.least.max(closed))
     }
 
+    /// The piece of a curve that contains a parameter.
+    fn piece_at(&self, id: CurveId, t: f64) -> usize {
+        let pieces = &self.pieces[id.index()];
+        pieces.partition_point(|piece| piece.end() < t).min(pieces.len() - 1)
+    }
+
+    /// The point of a curve at a parameter; its vertices at its ends.
+    fn point(&self, id: CurveId, t: f64) -> DVec2 {
+        let curve = &self.domain.curves[id.index()];
+        if t == 0.0 {
+            curve.first()
+        } else if t == 1.0 {
+            curve.last()
+        } else {
+            curve.curve.point(t)
+        }
+    }
+
     /// The curve that determines the division of this one.
     pub fn first(&self, id: CurveId) -> CurveId {
         self.domain.curves[id.index()].first
@@ -160,7 +202,7 @@ impl<'a> Division<'a> {
             return self.split_at_farthest(id, chord);
         }
         if self.domain.curves[id.index()].segments.is_some()
-            || self.domain.images(id).iter().all(|image| image.curve.straight())
+            || self.domain.images(id).iter().all(|image| image.curve.straight_between_corners())
         {
             return false;
         }
@@ -189,30 +231,48 @@ impl<'a> Division<'a> {
         true
     }
 
-    /// Makes every boundary walk even, and gives walks and loops at least four segments.
+    /// Makes every boundary walk even, and gives walks and loops at least four segments. Pieces that face each other
+    /// keep equal numbers, unless the loops cannot be even then.
     ///
     /// # Errors
     /// If fixed numbers do not allow that: names the loop with its number of segments.
     pub fn even_out(&mut self) -> Result<(), Fault> {
-        let walks: Vec<(usize, &Vec<DirectedCurve>)> =
-            self.domain.faces.iter().enumerate().flat_map(|(f, face)| face.walks.iter().map(move |w| (f, w))).collect();
-        let rows: Vec<Vec<u32>> = walks.iter().map(|(_, walk)| self.single_columns(walk)).collect();
-        let odd: Vec<bool> =
-            rows.iter().map(|row| row.iter().map(|&c| self.segments(CurveId(c))).sum::<u32>() % 2 == 1).collect();
-        let best: Vec<Option<(f64, usize, u32)>> = (0..self.pieces.len()).map(|c| self.best_toggle(c)).collect();
-        let cost: Vec<Option<f64>> = best.iter().map(|b| b.map(|b| b.0)).collect();
-        let toggled = parity::toggles(&rows, &odd, &cost).map_err(|blamed| {
+        for _ in 0..EVENINGS {
+            if self.ties.is_empty() {
+                break;
+            }
+            let loops = self.loops_without_gaps();
+            if self.even_once(&loops).is_err() {
+                let loops = self.whole_loops();
+                if self.even_once(&loops).is_err() {
+                    break;
+                }
+            }
+            self.fill_up()?;
+            if !self.level_ties() {
+                return Ok(());
+            }
+        }
+        self.untie();
+        let loops = self.whole_loops();
+        self.even_once(&loops).map_err(|blamed| {
+            let walks: Vec<_> = walks(self.domain).collect();
             let blamed: Vec<_> = blamed.iter().map(|&r| walks[r as usize]).collect();
             self.odd_fault(&blamed)
         })?;
-        for (c, best) in best.iter().enumerate() {
-            if let (true, Some((_, piece, n))) = (toggled[c], *best) {
-                self.pieces[c][piece].segments = n;
-            }
-        }
+        self.fill_up()
+    }
+
+    /// Gives walks and loops at least four segments.
+    ///
+    /// # Errors
+    /// If fixed numbers do not allow that.
+    fn fill_up(&mut self) -> Result<(), Fault> {
+        let walks: Vec<_> = walks(self.domain).collect();
         // Curves that no walk traverses an odd number of times.
         let mut doubled = vec![true; self.pieces.len()];
-        rows.iter().flatten().for_each(|&c| doubled[c as usize] = false);
+        let single = walks.iter().flat_map(|(_, walk)| self.single_curves(walk));
+        single.for_each(|c| doubled[c as usize] = false);
         let loops = self.domain.faces.iter().enumerate().flat_map(|(f, face)| face.loops.iter().map(move |l| (f, l)));
         for (f, steps) in loops.chain(walks) {
             while steps.iter().map(|s| self.segments(s.curve)).sum::<u32>() < 4 {
@@ -260,29 +320,6 @@ impl<'a> Division<'a> {
         }
     }
 
-    /// The cheapest change of the number of segments by one: the resulting relative length error, the piece, its new
-    /// number.
-    fn best_toggle(&self, c: usize) -> Option<(f64, usize, u32)> {
-        let curve = &self.domain.curves[c];
-        if curve.segments.is_some() || curve.first.index() != c {
-            return None;
-        }
-        let least = self.least(curve);
-        let may_shrink = self.segments(CurveId(c as u32)) > least;
-        let mut best: Option<(f64, usize, u32)> = None;
-        for (i, piece) in self.pieces[c].iter().enumerate() {
-            let n = piece.segments;
-            for changed in [n + 1, n - 1] {
-                if (changed > n || (may_shrink && changed >= piece.least))
-                    && best.is_none_or(|b| piece.error(changed) < b.0)
-                {
-                    best = Some((piece.error(changed), i, changed));
-                }
-            }
-        }
-        best
-    }
-
     /// A fault about a loop of a face, made from its name and its number of segments, with its place.
     fn loop_fault(&self, f: usize, steps: &[DirectedCurve], fault: impl Fn(&str, u32) -> Fault) -> Fault {
         let curve = &self.domain.curves[steps[0].curve.index()];
@@ -302,7 +339,7 @@ impl<'a> Division<'a> {
     }
 
     fn odd_fault(&self, blamed: &[(usize, &Vec<DirectedCurve>)]) -> Fault {
-        let mut fixed: Vec<u32> = blamed.iter().flat_map(|(_, walk)| self.single_columns(walk)).collect();
+        let mut fixed: Vec<u32> = blamed.iter().flat_map(|(_, walk)| self.single_curves(walk)).collect();
         fixed.sort_unstable();
         let fixed: Vec<CurveId> = fixed
             .chunk_by(|a, b| a == b)
@@ -337,8 +374,8 @@ impl<'a> Division<'a> {
         placed(fault.remedy(remedy), &self.domain.curves[blamed[0].1[0].curve.index()].place)
     }
 
-    /// Columns of a walk in the parity system, ascending: its curves except those that it traverses twice.
-    fn single_columns(&self, walk: &[DirectedCurve]) -> Vec<u32> {
+    /// The curves of a walk except those that it traverses twice, ascending.
+    fn single_curves(&self, walk: &[DirectedCurve]) -> Vec<u32> {
         let mut ids: Vec<u32> = walk.iter().map(|d| self.first(d.curve).0).collect();
         ids.sort_unstable();
         ids.chunk_by(|a, b| a == b).filter(|g| g.len() % 2 == 1).map(|g| g[0]).collect()
@@ -367,6 +404,8 @@ impl<'a> Division<'a> {
             divided.joined = self.joined_vertices();
             divided.xyz = spatial.vertex_of.iter().map(|&v| spatial.vertices[v as usize]).collect();
         }
+        let facing = self.facing_places()?;
+        divided.is_facing = !facing.is_empty();
         // The parameters of the last first image.
         let mut parameters: Vec<f64> = Vec::new();
         for (c, curve) in self.domain.curves.iter().enumerate() {
@@ -375,7 +414,10 @@ impl<'a> Division<'a> {
                 parameters.clear();
                 let (pieces, along) = (&self.pieces[c], self.along(curve));
                 for (i, piece) in pieces.iter().enumerate() {
-                    parameters.extend(piece.divisions(&along)?);
+                    match facing.get(&(curve.first, i)) {
+                        Some(places) => parameters.extend(places),
+                        None => parameters.extend(piece.divisions(&along)?),
+                    }
                     if i + 1 < pieces.len() {
                         parameters.push(piece.end());
                     }
@@ -393,11 +435,32 @@ impl<'a> Division<'a> {
                 }
             }
             chain.push(curve.ends[1]);
+            if is_first {
+                self.push_forced(&mut divided, c, &chain);
+            }
             divided.chains.push(chain);
             divided.parameters.push([0.0].into_iter().chain(parameters.iter().copied()).chain([1.0]).collect());
         }
         hard::place(self.domain, &mut divided);
         Ok(divided)
+    }
+
+    /// Notes the segments of a curve that are much shorter than the metric asks for.
+    fn push_forced(&self, divided: &mut DividedDomain, c: usize, chain: &[u32]) {
+        let at = |node: u32| match divided.xyz.get(node as usize) {
+            Some(&xyz) => xyz,
+            None => divided.nodes[node as usize].extend(0.0),
+        };
+        let (mut from, mut forced) = (0, Vec::new());
+        for piece in &self.pieces[c] {
+            let (to, metric_length) = (from + piece.segments as usize, piece.segment_length());
+            if metric_length < SHORT {
+                let side = |w: &[u32]| ForcedSide::standing([at(w[0]), at(w[1])], metric_length);
+                forced.extend(chain[from..=to].windows(2).map(side));
+            }
+            from = to;
+        }
+        divided.forced.extend(forced.into_iter().filter(|side| side.size > 0.0));
     }
 }
 

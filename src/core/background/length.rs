@@ -32,12 +32,53 @@ pub struct Piece {
     pub segments: u32,
     /// The least number of segments that keeps its shape.
     pub least: u32,
+    /// The number of the tie of pieces across a narrow gap that it belongs to.
+    pub tie: Option<u32>,
 }
 
 impl Piece {
+    /// One segment.
+    fn with_table(table: Vec<(f64, f64)>) -> Piece {
+        Piece { table, segments: 1, least: 1, tie: None }
+    }
+
     /// Metric length.
     pub fn length(&self) -> f64 {
         self.table[self.table.len() - 1].1
+    }
+
+    /// Parameter at its start.
+    pub fn start(&self) -> f64 {
+        self.table[0].0
+    }
+
+    /// Metric length from its start to a parameter of it, linear between entries of the table.
+    pub fn length_at(&self, t: f64) -> f64 {
+        let k = self.table.partition_point(|entry| entry.0 <= t).clamp(1, self.table.len() - 1);
+        let ((t0, l0), (t1, l1)) = (self.table[k - 1], self.table[k]);
+        l0 + (l1 - l0) * ((t - t0) / (t1 - t0)).clamp(0.0, 1.0)
+    }
+
+    /// The parameter at a metric length from its start, linear between entries of the table.
+    pub fn parameter_at(&self, length: f64) -> f64 {
+        let k = self.table.partition_point(|entry| entry.1 <= length).clamp(1, self.table.len() - 1);
+        let ((t0, l0), (t1, l1)) = (self.table[k - 1], self.table[k]);
+        t0 + (t1 - t0) * ((length - l0) / (l1 - l0).max(f64::MIN_POSITIVE)).clamp(0.0, 1.0)
+    }
+
+    /// Divides it at a parameter inside; the two parts have one segment each.
+    ///
+    /// # Errors
+    /// If the metric fails.
+    pub fn cut(&self, along: &Along<'_>, t: f64) -> Result<[Piece; 2], Fault> {
+        let k = self.table.partition_point(|entry| entry.0 < t).max(1);
+        let (before, length) = self.table[k - 1];
+        let here = length + gauss(along, before, t)?;
+        let mut first = self.table[..k].to_vec();
+        first.push((t, here));
+        let rest = self.table[k..].iter().filter(|entry| entry.0 > t).map(|&(t, length)| (t, length - here));
+        let second = [(t, 0.0)].into_iter().chain(rest).collect();
+        Ok([first, second].map(Piece::with_table))
     }
 
     /// Parameter at its end.
@@ -51,7 +92,7 @@ impl Piece {
         let k = self.table.iter().position(|entry| entry.0 == t).filter(|&k| k > 0 && k + 1 < self.table.len())?;
         let before = self.table[k].1;
         let rest = self.table[k..].iter().map(|&(t, length)| (t, length - before)).collect();
-        let mut parts = [self.table[..=k].to_vec(), rest].map(|table| Piece { table, segments: 1, least: 1 });
+        let mut parts = [self.table[..=k].to_vec(), rest].map(Piece::with_table);
         let share = |part: &Piece| (part.length() / self.segment_length()).round().max(1.0) as u32;
         parts.iter_mut().for_each(|part| part.segments = share(part));
         let all: u32 = parts.iter().map(|part| part.segments).sum();
@@ -166,8 +207,7 @@ pub fn measure(along: &Along<'_>, besides: &[f64]) -> Result<Vec<Piece>, Fault> 
             }
         }
         if w[1] >= 1.0 || corners.get(pieces.len()).is_some_and(|&t| t <= w[1]) {
-            let table = std::mem::replace(&mut table, vec![(w[1], 0.0)]);
-            pieces.push(Piece { table, segments: 1, least: 1 });
+            pieces.push(Piece::with_table(std::mem::replace(&mut table, vec![(w[1], 0.0)])));
         }
     }
     Ok(pieces)

@@ -12,3 +12,4 @@ pub mod adapt;
 
 pub use adapt::Adapted;
 pub use discretise::DividedDomain;
+pub(in crate::core) use discretise::{Division, Gaps};

@@ -16,7 +16,6 @@ use crate::core::geometry::{CurveId, CurveKind, Domain, PointOn};
 use crate::core::kernel::decimal::point_text;
 use crate::core::kernel::predicates::{firm, positive};
 use crate::core::mesh::{PointId, TriangleSet};
-use crate::core::metric::MetricSource;
 
 /// The number of refinements of clashing curves before the domain is refused.
 const ROUNDS: usize = 64;
@@ -29,16 +28,22 @@ const LEAST_SINE: f64 = 0.02;
 /// surface would bulge out.
 const MOST_BULGE: f64 = 0.25;
 
-/// Divides the curves of a domain in the metric and triangulates it; curves whose chords clash are divided more finely
+/// Divides the curves of a domain in the metric and triangulates it, for tests.
+#[cfg(test)]
+pub fn divide_and_triangulate(
+    domain: &Domain,
+    metric: &dyn crate::core::metric::MetricSource,
+) -> Result<(DividedDomain, TriangleSet), Fault> {
+    divide_by(Division::measure(domain, metric)?)
+}
+
+/// Divides curves that are measured and triangulates their domain; curves whose chords clash are divided more finely
 /// (docs/algorithm.md, "Curves divided at equal metric length").
 ///
 /// # Errors
-/// What [`super::discretise::divide`] refuses, and chords that still clash after many refinements.
-pub fn divide_and_triangulate(
-    domain: &Domain,
-    metric: &dyn MetricSource,
-) -> Result<(DividedDomain, TriangleSet), Fault> {
-    let mut division = Division::measure(domain, metric)?;
+/// What [`Division::even_out`] refuses, and chords that still clash after many refinements.
+pub fn divide_by(mut division: Division<'_>) -> Result<(DividedDomain, TriangleSet), Fault> {
+    let domain = division.domain;
     division.even_out()?;
     let mut first = None;
     for round in 0.. {
@@ -48,12 +53,12 @@ pub fn divide_and_triangulate(
         match triangulate(domain, &divided) {
             Ok((set, folded)) => {
                 // A corner that refinement does not improve is a corner of the surface.
-                if is_last || !refined(&mut division, &divided, folded) {
+                if is_last || !refined(&mut division, &divided, folded)? {
                     return Ok((divided, set));
                 }
             }
             Err(clash) => {
-                if is_last || !refined(&mut division, &divided, clash.chords) {
+                if is_last || !refined(&mut division, &divided, clash.chords)? {
                     return Err(clash.fault);
                 }
             }
@@ -63,7 +68,7 @@ pub fn divide_and_triangulate(
 }
 
 /// Refines curves at some of their chords; `false` if nothing changes.
-fn refined(division: &mut Division, divided: &DividedDomain, chords: Vec<DividedChord>) -> bool {
+fn refined(division: &mut Division, divided: &DividedDomain, chords: Vec<DividedChord>) -> Result<bool, Fault> {
     let mut seen: FxHashSet<DividedChord> = FxHashSet::default();
     let mut helped = false;
     for (id, k) in chords {
@@ -74,7 +79,12 @@ fn refined(division: &mut Division, divided: &DividedDomain, chords: Vec<Divided
             helped |= division.refine(first, [from, to]);
         }
     }
-    helped
+    // Refinement keeps loops even, but not the numbers of pieces that face each other.
+    if division.is_unlevel() {
+        division.level_ties();
+        division.even_out()?;
+    }
+    Ok(helped)
 }
 
 #[derive(Clone, Copy)]

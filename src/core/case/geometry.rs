@@ -6,12 +6,16 @@ use super::table::{Table, Value};
 use crate::core::fault::Fault;
 use crate::core::geometry::{CurveShape, CurveSpec, FaceSpec};
 
+/// By default, a polyline has a corner where it turns by at least this angle (degrees).
+const CORNER_ANGLE: f64 = 5.0;
+
 /// Reads the curves; `geometry` checks them.
 pub(super) fn curves(document: &Table<'_>) -> Result<Vec<CurveSpec>, Fault> {
+    let corner = corner_angle_of_case(document)?;
     let mut curves = Vec::new();
     for table in document.tables("curve")? {
         let name = name(&table)?;
-        let shape = shape(&table)?;
+        let shape = shape_of(&table, corner, &[])?;
         let segments = table.get("segments").map(|v| v.count(1, 100_000_000)).transpose()?;
         curves.push(CurveSpec { name, shape, segments, place: table.place() });
     }
@@ -69,12 +73,24 @@ pub(super) fn name(table: &Table<'_>) -> Result<String, Fault> {
     Ok(name.to_owned())
 }
 
-fn shape(table: &Table<'_>) -> Result<CurveShape, Fault> {
-    shape_of(table, &[])
+/// Reads `corner_angle` of a case or of a polyline, in radians.
+pub(super) fn corner_angle(table: &Table<'_>, default: f64) -> Result<f64, Fault> {
+    let Some(value) = table.get("corner_angle") else { return Ok(default) };
+    let degrees = value.number()?;
+    if (0.0..=90.0).contains(&degrees) {
+        return Ok(degrees.to_radians());
+    }
+    Err(value.wrong("an angle from 0 to 90 degrees", &format!("corner_angle = {CORNER_ANGLE}")))
 }
 
-/// Reads a plane curve; `besides` are further keys allowed in the table.
-pub(super) fn shape_of(table: &Table<'_>, besides: &[&'static str]) -> Result<CurveShape, Fault> {
+/// The corner angle of a case, in radians.
+pub(super) fn corner_angle_of_case(document: &Table<'_>) -> Result<f64, Fault> {
+    corner_angle(document, CORNER_ANGLE.to_radians())
+}
+
+/// Reads a plane curve; polylines have corners by `corner` (radians) unless they say otherwise, and `besides` are
+/// further keys allowed in the table.
+pub(super) fn shape_of(table: &Table<'_>, corner: f64, besides: &[&'static str]) -> Result<CurveShape, Fault> {
     let keys = |own: &[&'static str]| table.only(&[&["name", "kind", "segments"], own, besides].concat());
     let kind = table.need("kind", "\"segment\"")?;
     match kind.text()? {
@@ -109,10 +125,10 @@ pub(super) fn shape_of(table: &Table<'_>, besides: &[&'static str]) -> Result<Cu
             Ok(CurveShape::Arc { centre, radius, from_angle, to_angle: from_angle + TAU })
         }
         "polyline" => {
-            keys(&["points", "closed"])?;
+            keys(&["points", "closed", "corner_angle"])?;
             let points = table.need("points", "[[0, 0], [1, 0], [1, 1]]")?.points()?;
             let closed = table.get("closed").map_or(Ok(false), |v| v.flag())?;
-            Ok(CurveShape::Polyline { points, closed })
+            Ok(CurveShape::Polyline { points, closed, corner_angle: corner_angle(table, corner)? })
         }
         "nurbs" => {
             keys(&["degree", "knots", "weights", "points"])?;

@@ -87,6 +87,9 @@ pub struct Case {
     pub fields: Vec<FieldSpec>,
     /// Bound of the metric's gradation (docs/algorithm.md, "Gradation"), greater than 1; `None`: not bounded.
     pub gradation: Option<f64>,
+    /// The distance up to which ends of plane curves and points of their polylines are one; by default a billionth of
+    /// the domain.
+    pub tolerance: Option<f64>,
     /// The largest distance of a chord from a curve, as a fraction of the radius.
     pub chord: f64,
     /// The least number of segments of a smooth closed curve.
@@ -149,6 +152,8 @@ impl Case {
             "notes",
             "parameters",
             "gradation",
+            "corner_angle",
+            "tolerance",
             "chord",
             "least_segments",
             "split_odd",
@@ -187,6 +192,7 @@ impl Case {
             notes: word("notes")?.unwrap_or_default().trim().to_owned(),
             parameters: parameters(&table)?,
             gradation: gradation(&table)?,
+            tolerance: table.get("tolerance").map(|value| value.positive()).transpose()?,
             chord: chord(&table)?,
             least_segments: least_segments(&table)?,
             split_odd: table.get("split_odd").map_or(Ok(false), |v| v.flag())?,
@@ -232,6 +238,7 @@ impl Case {
             points: Vec::new(),
             fields: Vec::new(),
             gradation: None,
+            tolerance: None,
             chord: ShapeLimits::CHORD,
             least_segments: ShapeLimits::LEAST_SEGMENTS,
             split_odd: false,
@@ -268,11 +275,20 @@ fn domain(table: &Table<'_>, folder: &Path) -> Result<DomainSource, Fault> {
             Err(fault.remedy(format!("Remove either {own} or {named}")))
         }
     };
+    let only_curves = |own: &str, keys: &[&str]| match keys.iter().find_map(|key| table.get(key)) {
+        None => Ok(()),
+        Some(value) => {
+            let fault = value.fault(format!("The case has a {own} and a {}", value.key()));
+            Err(fault.remedy(format!("Remove {}: it is for curves in the plane", value.key())))
+        }
+    };
     if let Some(value) = table.get("background") {
+        only_curves("background", &["corner_angle", "tolerance"])?;
         alone("background", &["surface", "curve", "face", "mesh", "sol", "chord", "least_segments"])?;
         return elements::elements(&value.table()?);
     }
     if let Some(path) = file("mesh")? {
+        only_curves("mesh", &["corner_angle", "tolerance"])?;
         alone("mesh", &["surface", "curve", "face"])?;
         let source = MeshSource::File { path, sol: file("sol")? };
         return Ok(DomainSource::Mesh { source, taking: taking::taking(table)? });
@@ -283,6 +299,7 @@ fn domain(table: &Table<'_>, folder: &Path) -> Result<DomainSource, Fault> {
         }
     }
     if table.get("surface").is_some() {
+        only_curves("surface", &["tolerance"])?;
         let complex = surfaces::complex(table)?;
         if complex.faces.is_empty() {
             return Err(table.fault("The case has no face").remedy("Add [[face]] with a name and a surface"));

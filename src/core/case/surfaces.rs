@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::geometry::{self, known_curves, name, shape_of};
+use super::geometry::{self, corner_angle, known_curves, name, shape_of};
 use super::table::{Table, Value};
 use crate::core::fault::Fault;
 use crate::core::geometry::{
@@ -15,12 +15,13 @@ pub(super) fn complex(document: &Table<'_>) -> Result<ComplexSpec, Fault> {
     for table in document.tables("surface")? {
         surfaces.push(SurfaceSpec { name: name(&table)?, shape: surface(&table)?, place: table.place() });
     }
+    let corner = geometry::corner_angle_of_case(document)?;
     let mut curves = Vec::new();
     for table in document.tables("curve")? {
         let segments = table.get("segments").map(|v| v.count(1, 100_000_000)).transpose()?;
         curves.push(SpaceCurveSpec {
             name: name(&table)?,
-            shape: curve(&table, &surfaces)?,
+            shape: curve(&table, &surfaces, corner)?,
             segments,
             place: table.place(),
         });
@@ -180,9 +181,12 @@ fn net(table: &Table<'_>) -> Result<(Vec<DVec3>, usize, Vec<f64>), Fault> {
     Ok((rows.concat(), columns, weights))
 }
 
-fn curve(table: &Table<'_>, surfaces: &[SurfaceSpec]) -> Result<SpaceShape, Fault> {
+fn curve(table: &Table<'_>, surfaces: &[SurfaceSpec], corner: f64) -> Result<SpaceShape, Fault> {
     if let Some(value) = table.get("on") {
-        return Ok(SpaceShape::On { surface: known_surface(&value, surfaces)?, shape: shape_of(table, &["on"])? });
+        return Ok(SpaceShape::On {
+            surface: known_surface(&value, surfaces)?,
+            shape: shape_of(table, corner, &["on"])?,
+        });
     }
     let keys = |own: &[&'static str]| table.only(&[&["name", "kind", "segments"], own].concat());
     let kind = table.need("kind", "\"segment\"")?;
@@ -205,9 +209,10 @@ fn curve(table: &Table<'_>, surfaces: &[SurfaceSpec]) -> Result<SpaceShape, Faul
             Ok(SpaceShape::Arc { frame: frame(table)?, radius, angles: [from, from + 360.0] })
         }
         "polyline" => {
-            keys(&["points", "closed"])?;
+            keys(&["points", "closed", "corner_angle"])?;
             let points = vectors(&table.need("points", "[[0, 0, 0], [1, 0, 0], [1, 1, 0]]")?)?;
-            Ok(SpaceShape::Polyline { points, closed: table.get("closed").map_or(Ok(false), |v| v.flag())? })
+            let closed = table.get("closed").map_or(Ok(false), |v| v.flag())?;
+            Ok(SpaceShape::Polyline { points, closed, corner_angle: corner_angle(table, corner)? })
         }
         "nurbs" => {
             keys(&["degree", "knots", "weights", "points"])?;

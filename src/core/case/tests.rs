@@ -58,7 +58,7 @@ fn a_case_is_read_with_the_lines_of_its_parts() {
     let DomainSource::Curves { curves, faces } = &case.domain else { panic!() };
     assert_eq!(curves[1].place, "plate.toml, line 17");
     assert_eq!(curves[1].segments, Some(24));
-    let CurveShape::Polyline { points, closed: true } = &curves[0].shape else { panic!() };
+    let CurveShape::Polyline { points, closed: true, .. } = &curves[0].shape else { panic!() };
     assert_eq!(points[2], DVec2::new(1.0, 1.5));
     assert_eq!(faces[0].holes, [["hole"]]);
     let FieldSpec::Formula { helpers, sizes, directions, place } = &case.fields[0] else { panic!() };
@@ -75,6 +75,39 @@ fn a_case_is_read_with_the_lines_of_its_parts() {
 fn refusal(from: &str, to: &str) -> String {
     assert!(PLATE.contains(from), "{from}");
     parse(&PLATE.replacen(from, to, 1)).expect_err(to).to_string()
+}
+
+#[test]
+fn the_corner_angle_of_a_polyline_is_its_own_or_that_of_the_case() {
+    let degrees = |of_case: &str, of_curve: &str| {
+        let text = PLATE.replacen("title", &format!("{of_case}\ntitle"), 1);
+        let case = parse(&text.replacen("closed = true", &format!("closed = true\n{of_curve}"), 1)).unwrap();
+        let DomainSource::Curves { curves, .. } = &case.domain else { panic!() };
+        let CurveShape::Polyline { corner_angle, .. } = curves[0].shape else { panic!() };
+        corner_angle.to_degrees()
+    };
+    let is = |found: f64, expected: f64| assert!((found - expected).abs() < 1e-12, "{found}");
+    is(degrees("", ""), 5.0);
+    is(degrees("corner_angle = 12", ""), 12.0);
+    is(degrees("corner_angle = 12", "corner_angle = 0"), 0.0);
+    assert_eq!(
+        refusal("closed = true", "closed = true\ncorner_angle = 91"),
+        "plate.toml, line 16: corner_angle = 91 is not an angle from 0 to 90 degrees. Write for example \
+         corner_angle = 5."
+    );
+    let mesh = "version = 1\ncorner_angle = 3\nmesh = \"a.msh\"";
+    assert_eq!(
+        parse(mesh).unwrap_err().to_string(),
+        "plate.toml, line 2: The case has a mesh and a corner_angle. Remove corner_angle: it is for curves in the \
+         plane."
+    );
+}
+
+#[test]
+fn a_tolerance_is_a_positive_length() {
+    let text = PLATE.replacen("title", "tolerance = 1e-6\ntitle", 1);
+    assert_eq!((parse(PLATE).unwrap().tolerance, parse(&text).unwrap().tolerance), (None, Some(1e-6)));
+    assert!(refusal("title", "tolerance = 0\ntitle").contains("tolerance = 0 is not greater than 0"));
 }
 
 #[test]

@@ -8,7 +8,7 @@ use crate::core::case::Case;
 use crate::core::fault::Fault;
 use crate::core::mesh::{Mesh, Names};
 use crate::core::metric::Sizing;
-use crate::core::prepare::{Background, background};
+use crate::core::prepare::{Background, Spacing, background};
 use crate::core::progress::Watch;
 
 /// The quadrilaterals of a case.
@@ -27,6 +27,8 @@ pub struct Converted {
     pub adapted: Adapted,
     /// Repairs of a given mesh, in words.
     pub repairs: Vec<String>,
+    /// What the boundary makes of the sizes that are asked for.
+    pub spacing: Spacing,
     /// What the steps of the front did.
     pub counts: Counts,
     /// What the last resort did, over all components.
@@ -52,12 +54,12 @@ pub fn convert_by(
     watch: &mut dyn Watch,
     drive: &mut dyn FnMut(&mut Converter<'_>, &mut dyn Watch) -> Result<(), Fault>,
 ) -> Result<Converted, Fault> {
-    let Background { mesh, sizing, names, adapted, repairs } = background(case, watch)?;
+    let Background { mesh, sizing, names, adapted, repairs, spacing } = background(case, watch)?;
     let triangles = mesh.element_count();
     let (mesh, counts, last_resort, finished) = {
         let mut converter = Converter::new(mesh, &sizing, case.parameters.clone());
         drive(&mut converter, watch)?;
         (converter.mesh, converter.counts, converter.last_resort, converter.finished)
     };
-    Ok(Converted { mesh, sizing, names, triangles, adapted, repairs, counts, last_resort, finished })
+    Ok(Converted { mesh, sizing, names, triangles, adapted, repairs, spacing, counts, last_resort, finished })
 }

@@ -164,7 +164,7 @@ pub fn join_ends(curves: &mut [DomainCurve], size: f64, tolerance: f64) -> Resul
             let p = short.map_or(c.first(), |w| w[0].1);
             let fault = Fault::new(format!("The curve \"{}\" has (nearly) zero length", c.name))
                 .at(format!("at {}", point_text(p)))
-                .remedy("Remove the curve, or the superfluous point");
+                .remedy("Remove the curve, or the superfluous point; tolerance (a key of the case) merges such points");
             return Err(placed(fault, &c.place));
         }
     }

@@ -49,11 +49,6 @@ impl Atlas {
         self.begins.partition_point(|begin| *begin <= p.x)
     }
 
-    /// Whether the chart at a point of the plane is a triangulated surface.
-    pub fn is_of_facets(&self, p: DVec2) -> bool {
-        matches!(self.charts[self.chart_of(p)], FaceSurface::Facets(_))
-    }
-
     /// The charts.
     pub fn charts(&self) -> &[FaceSurface] {
         &self.charts

@@ -62,11 +62,24 @@ impl Course {
         self.closed
     }
 
-    /// Whether all its pieces are straight, so that a finer subdivision does not change its course.
+    /// Whether all its pieces between breaks are straight.
     pub fn straight(&self) -> bool {
         match &self.path {
             Path::Plane(curve) => curve.straight(),
             Path::Image(image) => image.straight(),
+        }
+    }
+
+    /// Whether it is straight between its corners, so that a finer subdivision does not change its course.
+    pub fn straight_between_corners(&self) -> bool {
+        self.straight() && self.breaks.len() == self.corners.len() + 2
+    }
+
+    /// The number of inner points of a polyline that are no corners.
+    pub fn smooth_points(&self) -> usize {
+        match &self.path {
+            Path::Plane(curve) => curve.smooth_points(),
+            Path::Image(image) => image.curve().smooth_points(),
         }
     }
 

@@ -9,7 +9,7 @@ use super::curve::distance_to_segment;
 use super::domain_curve::{CurveId, DomainCurve};
 use super::inside::Chord;
 use crate::core::fault::Fault;
-use crate::core::kernel::decimal::point_text;
+use crate::core::kernel::decimal::{number, point_text};
 use crate::core::kernel::predicates::orient;
 
 /// The tolerances of the test. Two curves may be closer than `tolerance` only within `near` of a vertex that they share
@@ -246,7 +246,11 @@ fn refusal(a: &DomainCurve, b: &DomainCurve, meeting: Meeting, limits: Limits, f
         ),
         Meeting::Touches(_) => (
             format!("The curves \"{}\" and \"{}\" touch or cross", a.name, b.name),
-            "Move them apart, or make them meet at end points only".to_owned(),
+            format!(
+                "They are nearer than the tolerance, {}: move them apart, make them meet at end points only, or set \
+                 tolerance (a key of the case) to less than their distance",
+                number(limits.tolerance)
+            ),
         ),
     };
     let fault = Fault::new(what).at(format!("at {}", point_text(p))).remedy(remedy);

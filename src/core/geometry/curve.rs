@@ -20,12 +20,12 @@ pub struct Curve {
     corners: Vec<f64>,
 }
 
-/// A closed polyline repeats its first point at the end.
+/// A closed polyline repeats its first point at the end; `corners` are the indices of its inner corners.
 #[derive(Clone, Debug, PartialEq)]
 enum Path {
     Segment { from: DVec2, to: DVec2 },
     Arc { centre: DVec2, radius: f64, from_angle: f64, turn: f64 },
-    Polyline { points: Vec<DVec2> },
+    Polyline { points: Vec<DVec2>, corners: Vec<u32> },
     Nurbs(NurbsCurve),
 }
 
@@ -73,11 +73,11 @@ impl Curve {
                 }
                 Path::Arc { centre: *centre, radius: *radius, from_angle: *from_angle, turn }
             }
-            CurveShape::Polyline { points, closed: close } => {
+            CurveShape::Polyline { points, closed: close, corner_angle } => {
                 check_coordinates(points)?;
-                let points = corners_of_polyline(points, *close)?;
+                let points = points_of_polyline(points, *close)?;
                 closed = points.first() == points.last();
-                Path::Polyline { points }
+                Path::Polyline { corners: sharp_points(&points, *corner_angle), points }
             }
             CurveShape::Nurbs { degree, knots, weights, points } => {
                 check_coordinates(points)?;
@@ -103,7 +103,7 @@ impl Curve {
                 let (slope_sin, slope_cos) = libm::sincos(from_angle + t * turn);
                 (*centre + *radius * DVec2::new(cos, sin), radius * turn * DVec2::new(-slope_sin, slope_cos))
             }
-            Path::Polyline { points } => {
+            Path::Polyline { points, .. } => {
                 let n = points.len() - 1;
                 let (i, s) = piece(n, t);
                 (lerp(points[i], points[i + 1], s), n as f64 * (points[i + 1] - points[i]))
@@ -122,7 +122,7 @@ impl Curve {
         self.closed
     }
 
-    /// Whether all its pieces are straight, so that a finer subdivision does not change its course.
+    /// Whether all its pieces between breaks are straight.
     pub fn straight(&self) -> bool {
         match &self.path {
             Path::Segment { .. } | Path::Polyline { .. } => true,
@@ -141,11 +141,20 @@ impl Curve {
         &self.corners
     }
 
-    /// Parameters between which the curve is smooth, from 0 to 1: its corners and the knots of a NURBS.
+    /// The number of inner points of a polyline that are no corners.
+    pub fn smooth_points(&self) -> usize {
+        match &self.path {
+            Path::Polyline { points, corners } => points.len() - 2 - corners.len(),
+            _ => 0,
+        }
+    }
+
+    /// Parameters between which the curve is smooth, from 0 to 1: its corners, all points of a polyline and the knots
+    /// of a NURBS.
     pub fn breaks(&self) -> Vec<f64> {
         match &self.path {
             Path::Segment { .. } | Path::Arc { .. } => vec![0.0, 1.0],
-            Path::Polyline { .. } => with_ends(self.corners.iter().copied()),
+            Path::Polyline { points, .. } => with_ends(inner_parameters(points).into_iter()),
             Path::Nurbs(nurbs) => with_ends(nurbs.basis().unit_knots()),
         }
     }
@@ -175,7 +184,7 @@ impl Curve {
         match &self.path {
             Path::Segment { from, to } => (from.min(*to), from.max(*to)),
             Path::Arc { centre, radius, .. } => (*centre - DVec2::splat(*radius), *centre + DVec2::splat(*radius)),
-            Path::Polyline { points } => extent(points.iter().copied()),
+            Path::Polyline { points, .. } => extent(points.iter().copied()),
             Path::Nurbs(nurbs) => extent(nurbs.control_points()),
         }
     }
@@ -183,7 +192,7 @@ impl Curve {
     fn find_corners(&self) -> Vec<f64> {
         match &self.path {
             Path::Segment { .. } | Path::Arc { .. } => Vec::new(),
-            Path::Polyline { points } => inner_parameters(points),
+            Path::Polyline { points, corners } => parameters_of(corners, points.len()),
             Path::Nurbs(nurbs) => nurbs.sharp_knots(|before, after| {
                 before.perp_dot(after).abs() > 1e-6 * before.length() * after.length() || before.dot(after) < 0.0
             }),
@@ -272,6 +281,29 @@ pub(super) fn inner_parameters<P>(points: &[P]) -> Vec<f64> {
     (1..n).map(|i| i as f64 / n as f64).collect()
 }
 
+/// The parameters of some of the points of a polyline of `count` points, by index.
+pub(super) fn parameters_of(points: &[u32], count: usize) -> Vec<f64> {
+    points.iter().map(|&i| f64::from(i) / (count - 1) as f64).collect()
+}
+
+/// The indices of the inner points of a polyline at which it turns by at least `angle` (radians).
+pub(super) fn sharp_points<const N: usize, P: Vector + Into<[f64; N]>>(points: &[P], angle: f64) -> Vec<u32> {
+    let direction = |a: P, b: P| -> [f64; N] {
+        let d: [f64; N] = (b - a).into();
+        let length = d.iter().map(|x| x * x).sum::<f64>().sqrt();
+        d.map(|x| x / length)
+    };
+    // The distance of two unit vectors is twice the sine of half the angle between them.
+    let least = 2.0 * libm::sin(0.5 * angle);
+    let is_sharp = |&i: &usize| {
+        let [before, after] = [i - 1, i].map(|k| direction(points[k], points[k + 1]));
+        let squared: f64 = before.iter().zip(after).map(|(x, y)| (x - y) * (x - y)).sum();
+        // Also where a length overflows or vanishes.
+        squared >= least * least || squared.is_nan()
+    };
+    (1..points.len() - 1).filter(is_sharp).map(|i| i as u32).collect()
+}
+
 /// Inner parameters, ascending, between 0 and 1: each once, and without those that rounding has made 1.
 pub(super) fn with_ends(inner: impl Iterator<Item = f64>) -> Vec<f64> {
     let mut breaks: Vec<f64> = std::iter::once(0.0).chain(inner).filter(|&t| t < 1.0).collect();
@@ -288,11 +320,11 @@ pub(super) fn check_coordinates<const N: usize, P: Copy + Into<[f64; N]>>(points
     }
 }
 
-/// The corners of a polyline, with the first one repeated at the end if it is to be closed.
+/// The points of a polyline, with the first one repeated at the end if it is to be closed.
 ///
 /// # Errors
 /// Coordinates that [`check_coordinates`] refuses, too few points, two equal points in a row.
-pub(super) fn corners_of_polyline<const N: usize, P: Vector + Into<[f64; N]>>(
+pub(super) fn points_of_polyline<const N: usize, P: Vector + Into<[f64; N]>>(
     points: &[P],
     close: bool,
 ) -> Result<Vec<P>, Fault> {
@@ -310,7 +342,7 @@ pub(super) fn corners_of_polyline<const N: usize, P: Vector + Into<[f64; N]>>(
     if let Some(i) = (1..corners.len()).find(|&i| corners[i] == corners[i - 1]) {
         let at = point_text(corners[i]);
         return Err(Fault::new(format!("Its points {i} and {} are the same, {at}: a piece of zero length", i + 1))
-            .remedy("Remove one of them"));
+            .remedy("Remove one of them, or set tolerance (a key of the case), which merges them"));
     }
     Ok(corners)
 }
@@ -323,7 +355,7 @@ mod tests {
 
     fn polyline(points: &[(f64, f64)], closed: bool) -> Result<Curve, Fault> {
         let points = points.iter().map(|&(x, y)| DVec2::new(x, y)).collect();
-        Curve::new(&CurveShape::Polyline { points, closed })
+        Curve::new(&CurveShape::Polyline { points, closed, corner_angle: 0.0 })
     }
 
     fn arc(centre: DVec2, radius: f64, from_angle: f64, to_angle: f64) -> Result<Curve, Fault> {
@@ -389,6 +421,27 @@ mod tests {
         assert!(closed.closed());
         assert_eq!(closed.corners().len(), 2);
         assert_eq!(closed, polyline(&[(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (0.0, 0.0)], true).unwrap());
+    }
+
+    #[test]
+    fn only_points_at_which_a_polyline_turns_enough_are_corners() {
+        // It turns by 3, 7 and 90 degrees.
+        let mut points = vec![DVec2::ZERO];
+        for direction in [0.0_f64, 3.0, 10.0, 100.0] {
+            points.push(points[points.len() - 1] + DVec2::from_angle(direction.to_radians()));
+        }
+        let corners = |degrees: f64| {
+            let shape =
+                CurveShape::Polyline { points: points.clone(), closed: false, corner_angle: degrees.to_radians() };
+            let curve = Curve::new(&shape).unwrap();
+            assert_eq!(curve.breaks(), &[0.0, 0.25, 0.5, 0.75, 1.0]);
+            assert_eq!(curve.polyline(1.0).len(), 5);
+            (curve.corners().to_vec(), curve.smooth_points())
+        };
+        assert_eq!(corners(0.0), (vec![0.25, 0.5, 0.75], 0));
+        assert_eq!(corners(5.0), (vec![0.5, 0.75], 1));
+        assert_eq!(corners(89.0), (vec![0.75], 2));
+        assert_eq!(corners(91.0), (vec![], 3));
     }
 
     #[test]

@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
-use rstar::RTree;
+use rstar::{AABB, RTree};
 
 use super::assembly::{join_ends, loop_name, placed, resolve};
 use super::atlas::Atlas;
@@ -17,7 +17,7 @@ use super::space_curve::SpaceCurve;
 use super::spec::{CurveSpec, FaceSpec};
 use crate::core::fault::Fault;
 use crate::core::kernel::box_tree::extent;
-use crate::core::kernel::decimal::point_text;
+use crate::core::kernel::decimal::{number, point_text};
 
 /// A face of the domain.
 #[derive(Clone, Debug)]
@@ -80,6 +80,10 @@ pub struct Domain {
     pub size: f64,
     /// The geometry in space, if the faces lie on surfaces.
     pub spatial: Option<Arc<Spatial>>,
+    /// The number of points of polylines that the given tolerance has merged with others.
+    pub merged_points: usize,
+    /// The number of ends of curves that the given tolerance has moved to a vertex.
+    pub joined_ends: usize,
     lower: DVec2,
     upper: DVec2,
     chords: RTree<Chord>,
@@ -93,9 +97,33 @@ impl Domain {
     /// curves that cross or touch except at shared end points; holes, cracks and repeated lines outside their face;
     /// faces that overlap.
     pub fn build(curves: Vec<CurveSpec>, faces: Vec<FaceSpec>) -> Result<Domain, Fault> {
+        Domain::build_within(curves, faces, None)
+    }
+
+    /// As [`Domain::build`], with the distance up to which ends of curves are one vertex, points of a polyline are one
+    /// point, and curves touch.
+    ///
+    /// # Errors
+    /// As there, and a tolerance of more than a tenth of the domain.
+    pub fn build_within(
+        mut curves: Vec<CurveSpec>,
+        faces: Vec<FaceSpec>,
+        tolerance: Option<f64>,
+    ) -> Result<Domain, Fault> {
+        let merge = |tolerance: f64| curves.iter_mut().map(|curve| curve.shape.merge_points(tolerance)).sum::<usize>();
+        let merged_points = tolerance.map_or(0, merge);
         let (mut curves, lists) = resolve(&curves, &faces)?;
-        let extent = Extent::of(&curves)?;
+        let plain = Extent::of(&curves)?;
+        let extent = plain.within(tolerance)?;
         let vertices = join_ends(&mut curves, extent.size, extent.tolerance)?;
+        let moved = |curve: &DomainCurve| {
+            let far = |&k: &usize| {
+                let vertex = vertices[curve.ends[k] as usize];
+                curve.curve.point(k as f64).distance(vertex) > plain.tolerance
+            };
+            [0, 1].into_iter().filter(far).count()
+        };
+        let joined_ends = curves.iter().map(moved).sum();
         let mut chains = Vec::with_capacity(faces.len());
         for (spec, list) in faces.iter().zip(&lists) {
             let mut chain = Vec::with_capacity(list.len());
@@ -104,7 +132,8 @@ impl Domain {
             }
             chains.push(chain);
         }
-        Domain::assemble(curves, vertices, chains, &faces, extent, Borders::Unchecked)
+        let domain = Domain::assemble(curves, vertices, chains, &faces, extent, Borders::Unchecked)?;
+        Ok(Domain { merged_points, joined_ends, ..domain })
     }
 
     /// Builds a domain of curves that meet at `vertices` and are chained into the loops of each face.
@@ -161,6 +190,8 @@ impl Domain {
             points: Vec::new(),
             size,
             spatial: None,
+            merged_points: 0,
+            joined_ends: 0,
             lower,
             upper,
             chords,
@@ -303,6 +334,33 @@ impl Domain {
         points
     }
 
+    /// The first curve that a ray meets, and its parameter there, by the fine polylines. The ray leaves a curve at the
+    /// parameter `s` in the direction `across`, and is `reach` long; it may meet other parts of the same curve.
+    pub fn first_across(&self, from: CurveId, s: f64, across: DVec2, reach: f64) -> Option<(CurveId, f64)> {
+        let fine = &self.curves[from.index()].fine;
+        let own = fine.partition_point(|entry| entry.0 <= s).clamp(1, fine.len() - 1) - 1;
+        let start = fine[own].1.lerp(fine[own + 1].1, (s - fine[own].0) / (fine[own + 1].0 - fine[own].0));
+        let d = across * reach;
+        let (low, high) = (start.min(start + d), start.max(start + d));
+        let near = self.chords.locate_in_envelope_intersecting(AABB::from_corners(low.into(), high.into()));
+        let mut first: Option<(f64, CurveId, u32, f64)> = None;
+        for &(id, i) in near.map(|chord| &chord.data).filter(|&&(id, i)| (id, i as usize) != (from, own)) {
+            let [a, b] = [i, i + 1].map(|k| self.curves[id.index()].fine[k as usize].1);
+            let along = b - a;
+            let (share, far) = ((a - start).perp_dot(d), (a - start).perp_dot(along));
+            let sine = d.perp_dot(along);
+            let (share, far) = (share / sine, far / sine);
+            // Parallel lines give no numbers.
+            let meets = (0.0..=1.0).contains(&share) && far > 0.0 && far <= 1.0;
+            if meets && first.is_none_or(|best| (far, id, i) < (best.0, best.1, best.2)) {
+                first = Some((far, id, i, share));
+            }
+        }
+        let (_, id, i, share) = first?;
+        let [t0, t1] = [i, i + 1].map(|k| self.curves[id.index()].fine[k as usize].0);
+        Some((id, t0 + (t1 - t0) * share))
+    }
+
     /// The curve of this name.
     pub fn curve(&self, name: &str) -> Option<&DomainCurve> {
         self.curves.iter().find(|c| c.name == name)
@@ -366,6 +424,23 @@ impl Extent {
         }
         let tolerance = (1e-9 * size).max(8.0 * f64::EPSILON * largest);
         Ok(Extent { lower, upper, size, tolerance })
+    }
+
+    /// The same extent with a given tolerance, no smaller than what rounding needs.
+    ///
+    /// # Errors
+    /// A tolerance of more than a tenth of the size.
+    fn within(self, tolerance: Option<f64>) -> Result<Extent, Fault> {
+        let Some(tolerance) = tolerance else { return Ok(self) };
+        if tolerance > 0.1 * self.size {
+            return Err(Fault::new(format!(
+                "tolerance = {tolerance} is more than a tenth of the domain, which is {} across",
+                number(self.size)
+            ))
+            .remedy("Give a distance at which two points are meant to be one"));
+        }
+        let largest = self.lower.abs().max(self.upper.abs()).max_element();
+        Ok(Extent { tolerance: tolerance.max(8.0 * f64::EPSILON * largest), ..self })
     }
 }
 

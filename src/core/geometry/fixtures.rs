@@ -27,7 +27,8 @@ pub fn arc(name: &str, centre: (f64, f64), radius: f64, from_angle: f64, to_angl
 }
 
 pub fn polyline(name: &str, points: &[(f64, f64)], closed: bool) -> CurveSpec {
-    named(name, CurveShape::Polyline { points: points.iter().map(|&p| DVec2::from(p)).collect(), closed })
+    let points = points.iter().map(|&p| DVec2::from(p)).collect();
+    named(name, CurveShape::Polyline { points, closed, corner_angle: 0.0 })
 }
 
 /// `face("f", "a b", &["hole1", "c d"], "crack", "repeated")`: lists are words.

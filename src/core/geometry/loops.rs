@@ -7,8 +7,12 @@ use smallvec::SmallVec;
 use super::assembly::loop_name;
 use super::domain_curve::{CurveId, CurveKind, DirectedCurve, DomainCurve};
 use crate::core::fault::Fault;
+use crate::core::kernel::box_tree::extent;
 use crate::core::kernel::decimal::{number, point_text};
 use crate::core::kernel::predicates::orient;
+
+/// Ends that are nearer to each other than this fraction of their loop may be meant to meet.
+const NEARLY: f64 = 0.01;
 
 /// Chains curves, given in any order and direction, into one closed loop that begins with the first of them: loop `i`
 /// of a face, where 0 is the outer loop.
@@ -65,8 +69,15 @@ pub fn chain(curves: &[DomainCurve], list: &[CurveId], face: &str, i: usize) -> 
         };
         let other =
             nearest.map_or(String::new(), |b| format!(" and {}, {} apart", end(b), number(spot(a).distance(spot(b)))));
-        return Err(Fault::new(format!("The {what} is open: {}{other}", end(a)))
-            .remedy("Make these ends meet, or name the curve that joins them"));
+        let size = |(low, high): (DVec2, DVec2)| (high - low).max_element();
+        let loop_size =
+            size(extent(list.iter().flat_map(|id| [curves[id.index()].first(), curves[id.index()].last()])));
+        let is_near = nearest.is_some_and(|b| spot(a).distance(spot(b)) <= NEARLY * loop_size);
+        return Err(Fault::new(format!("The {what} is open: {}{other}", end(a))).remedy(if is_near {
+            "Make these ends meet, or set tolerance (a key of the case) to more than this distance"
+        } else {
+            "Make these ends meet, or name the curve that joins them"
+        }));
     }
     let mut found = vec![DirectedCurve { curve: first, forward: true }];
     let (mut at, mut by) = (curves[first.index()].ends[1], 0);

@@ -5,7 +5,10 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
-use super::curve::{Curve, LARGEST, check_coordinates, corners_of_polyline, inner_parameters, lerp, piece, with_ends};
+use super::curve::{
+    Curve, LARGEST, check_coordinates, inner_parameters, lerp, parameters_of, piece, points_of_polyline, sharp_points,
+    with_ends,
+};
 use super::frame::{AxisFrame, sin_cos};
 use super::nurbs::NurbsCurve;
 use super::primitive::arc;
@@ -20,12 +23,12 @@ pub struct SpaceCurve {
     closed: bool,
 }
 
-/// `Sides` are edges of triangles; its `corners` are the indices of corners among the points.
+/// `Sides` are edges of triangles. The `corners` of a polyline and of sides are indices of inner points.
 #[derive(Clone, Debug, PartialEq)]
 enum Path {
     Segment { from: DVec3, to: DVec3 },
     Arc { frame: AxisFrame, radius: f64, angles: [f64; 2] },
-    Polyline { points: Vec<DVec3> },
+    Polyline { points: Vec<DVec3>, corners: Vec<u32> },
     Sides { points: Vec<DVec3>, corners: Vec<u32> },
     Nurbs(Box<NurbsCurve<DVec3>>),
     On { surface: Arc<NurbsSurface>, trim: Box<Curve> },
@@ -59,7 +62,10 @@ impl SpaceCurve {
                 check_coordinates(&[frame.centre])?;
                 Path::Arc { frame: *frame, radius: *radius, angles: *angles }
             }
-            SpaceShape::Polyline { points, closed } => Path::Polyline { points: corners_of_polyline(points, *closed)? },
+            SpaceShape::Polyline { points, closed, corner_angle } => {
+                let points = points_of_polyline(points, *closed)?;
+                Path::Polyline { corners: sharp_points(&points, *corner_angle), points }
+            }
             SpaceShape::Nurbs { degree, knots, weights, points } => {
                 check_coordinates(points)?;
                 if points.windows(2).all(|w| w[0] == w[1]) {
@@ -119,7 +125,7 @@ impl SpaceCurve {
                 let derivative = (across * cos - frame.start * sin) * (radius * (to - from).to_radians());
                 (frame.centre + (frame.start * cos + across * sin) * *radius, derivative)
             }
-            Path::Polyline { points } | Path::Sides { points, .. } => {
+            Path::Polyline { points, .. } | Path::Sides { points, .. } => {
                 let n = points.len() - 1;
                 let (i, s) = piece(n, t);
                 (lerp(points[i], points[i + 1], s), (points[i + 1] - points[i]) * n as f64)
@@ -152,6 +158,15 @@ impl SpaceCurve {
         }
     }
 
+    /// The number of inner points of a polyline that are no corners.
+    pub fn smooth_points(&self) -> usize {
+        match &self.path {
+            Path::Polyline { points, corners } => points.len() - 2 - corners.len(),
+            Path::On { trim, .. } => trim.smooth_points(),
+            _ => 0,
+        }
+    }
+
     /// Whether it is a single straight piece.
     pub fn is_chord(&self) -> bool {
         match &self.path {
@@ -170,9 +185,8 @@ impl SpaceCurve {
     pub fn corners(&self) -> Vec<f64> {
         match &self.path {
             Path::Segment { .. } | Path::Arc { .. } => Vec::new(),
-            Path::Polyline { points } => inner_parameters(points),
-            Path::Sides { points, corners } => {
-                corners.iter().map(|&i| f64::from(i) / (points.len() - 1) as f64).collect()
+            Path::Polyline { points, corners } | Path::Sides { points, corners } => {
+                parameters_of(corners, points.len())
             }
             Path::Nurbs(nurbs) => nurbs.sharp_knots(|before, after| {
                 before.cross(after).length() > 1e-6 * before.length() * after.length() || before.dot(after) < 0.0
@@ -185,7 +199,9 @@ impl SpaceCurve {
     pub fn breaks(&self) -> Vec<f64> {
         match &self.path {
             Path::Segment { .. } | Path::Arc { .. } => vec![0.0, 1.0],
-            Path::Polyline { points } | Path::Sides { points, .. } => with_ends(inner_parameters(points).into_iter()),
+            Path::Polyline { points, .. } | Path::Sides { points, .. } => {
+                with_ends(inner_parameters(points).into_iter())
+            }
             Path::Nurbs(nurbs) => with_ends(nurbs.basis().unit_knots()),
             Path::On { trim, .. } => trim.breaks(),
         }
@@ -212,7 +228,7 @@ impl SpaceCurve {
         };
         match &self.path {
             Path::Segment { from, to } => line(&[*from, *to]),
-            Path::Polyline { points } | Path::Sides { points, .. } => line(points),
+            Path::Polyline { points, .. } | Path::Sides { points, .. } => line(points),
             Path::Arc { frame, radius, angles: [from, to] } if from < to => arc(frame, *radius, [*from, *to]).ok(),
             Path::Arc { frame, radius, angles: [from, to] } => {
                 // Clockwise is anticlockwise about the reversed axis, from the same direction.

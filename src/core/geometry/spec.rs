@@ -27,10 +27,12 @@ pub enum CurveShape {
     },
     /// Straight lines through points; the corners become nodes.
     Polyline {
-        /// Corners.
+        /// Points.
         points: Vec<DVec2>,
-        /// Whether the last corner is joined to the first.
+        /// Whether the last point is joined to the first.
         closed: bool,
+        /// The angle by which it turns at a corner at least, radians; other points need not become nodes.
+        corner_angle: f64,
     },
     /// A rational B-spline.
     Nurbs {
@@ -43,6 +45,35 @@ pub enum CurveShape {
         /// Control points.
         points: Vec<DVec2>,
     },
+}
+
+impl CurveShape {
+    /// Leaves out the points of a polyline that are no farther than `tolerance` from the one before; the last point
+    /// stays. Returns their number.
+    pub(super) fn merge_points(&mut self, tolerance: f64) -> usize {
+        let CurveShape::Polyline { points, closed, .. } = self else { return 0 };
+        let before = points.len();
+        let mut kept: Vec<DVec2> = Vec::with_capacity(before);
+        for (i, &p) in points.iter().enumerate() {
+            // A point that is not finite is far from all others, and refused later.
+            let repeats = kept.last().is_some_and(|last| last.distance(p) <= tolerance);
+            let replaces = repeats && i + 1 == before && kept.len() > 1;
+            if replaces {
+                kept.pop();
+            }
+            if !repeats || replaces {
+                kept.push(p);
+            }
+        }
+        if let (true, [first, .., last]) = (*closed, kept.as_slice())
+            && first != last
+            && first.distance(*last) <= tolerance
+        {
+            kept.pop();
+        }
+        *points = kept;
+        before - points.len()
+    }
 }
 
 /// A hard point of a case: a place in the plane that becomes a node.
@@ -111,10 +142,12 @@ pub enum SpaceShape {
     },
     /// Straight lines through points; the corners become nodes.
     Polyline {
-        /// Corners.
+        /// Points.
         points: Vec<DVec3>,
-        /// Whether the last corner is joined to the first.
+        /// Whether the last point is joined to the first.
         closed: bool,
+        /// The angle by which it turns at a corner at least, radians; other points need not become nodes.
+        corner_angle: f64,
     },
     /// A rational B-spline.
     Nurbs {

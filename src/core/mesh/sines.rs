@@ -1,5 +1,5 @@
-//! Corner sines of elements with straight sides in space, relative to the surface normal: they show where elements fold
-//! over.
+//! Corner sines of elements with straight sides in space, relative to the surface normal and to the element's own mean
+//! normal: they show where elements fold over.
 
 use glam::{DVec2, DVec3};
 use smallvec::SmallVec;
@@ -20,19 +20,17 @@ impl Corners {
         (self.uv[corner], self.xyz[corner]) = (uv, xyz);
     }
 
-    /// The least corner sine relative to the surface normal at the corner and, on triangulated surfaces, whose normals
-    /// jump, also to the element's own normal; at most 0 if a side is no longer than `near`. In the plane the normal is
-    /// z. A result that is not above `floor` may be any number not above `floor`.
+    /// The least corner sine relative to the surface normal at the corner and, in space, also to the element's own mean
+    /// normal, as solvers have it; at most 0 if a side is no longer than `near`. In the plane the normal is z. A result
+    /// that is not above `floor` may be any number not above `floor`.
     pub fn least_sine(&self, embedding: Option<&Embedding>, near: f64, floor: f64) -> f64 {
         let count = self.xyz.len();
         if (0..count).any(|k| self.xyz[k].distance(self.xyz[(k + 1) % count]) <= near) {
             return 0.0;
         }
         let mut least = f64::INFINITY;
-        if embedding.is_some_and(|embedding| embedding.atlas.is_of_facets(self.uv[0])) {
-            // The area vector of the element, times two.
-            let own = (self.xyz[2] - self.xyz[0]).cross(self.xyz[count - 1] - self.xyz[1]).normalize_or_zero();
-            least = (0..count).map(|k| self.corner(k).dot(own)).fold(least, f64::min);
+        if embedding.is_some() {
+            least = self.own_sines().fold(least, f64::min);
         }
         for sine in self.surface_sines(embedding) {
             if least <= floor {
@@ -41,6 +39,15 @@ impl Corners {
             least = least.min(sine);
         }
         least
+    }
+
+    /// The sine of each corner relative to the element's own mean normal: for a quadrilateral those of
+    /// [`StraightQuad::corner_sines`](crate::core::metric::straight_quad::StraightQuad::corner_sines).
+    fn own_sines(&self) -> impl Iterator<Item = f64> {
+        let count = self.xyz.len();
+        // The area vector of the element, times two.
+        let own = (self.xyz[2] - self.xyz[0]).cross(self.xyz[count - 1] - self.xyz[1]).normalize_or_zero();
+        (0..count).map(move |k| self.corner(k).dot(own))
     }
 
     /// The sine of each corner relative to the surface normal there.
@@ -69,15 +76,26 @@ impl Mesh {
     }
 
     /// The elements on surfaces with a corner, between straight sides in space, that is inverted relative to the
-    /// surface normal: they fold over, as in a mesh too coarse for the curvature. None in the plane.
+    /// surface normal or to the element's own mean normal: they fold over, as in a mesh too coarse for the curvature.
+    /// None in the plane.
     pub fn folded(&self) -> Vec<ElementId> {
         let Some(embedding) = self.embedding() else { return Vec::new() };
         let folds = |sine: f64| sine.is_nan() || sine <= 0.0;
-        self.elements().filter(|&e| self.corners_in_space(e).surface_sines(Some(embedding)).any(folds)).collect()
+        let is_folded = |e: &ElementId| {
+            let corners = self.corners_in_space(*e);
+            corners.own_sines().any(folds) || corners.surface_sines(Some(embedding)).any(folds)
+        };
+        self.elements().filter(is_folded).collect()
     }
 
     /// The least sine of an element's corners in space; see [`Corners::least_sine`].
     pub fn least_sine(&self, e: ElementId, near: f64) -> f64 {
         self.corners_in_space(e).least_sine(self.embedding().map(|embedding| &**embedding), near, f64::NEG_INFINITY)
+    }
+
+    /// The least sine of an element's corners in space relative to the surface normal alone.
+    pub fn least_surface_sine(&self, e: ElementId) -> f64 {
+        let embedding = self.embedding().map(|embedding| &**embedding);
+        self.corners_in_space(e).surface_sines(embedding).fold(f64::INFINITY, f64::min)
     }
 }

@@ -10,6 +10,8 @@ use glam::{DVec2, DVec3};
 
 use super::boundary_layer::{BoundaryLayer, Distance};
 use super::curvature::Curvature;
+use super::forced::{Forced, ForcedSide};
+use super::gap::{Gap, Rungs};
 use super::place::MetricPlace;
 use super::table::Table;
 use crate::core::fault::{Fault, FaultKind};
@@ -132,6 +134,8 @@ enum Kind {
     Distance(Box<Distance>, String),
     Curvature(Curvature),
     Table(Box<Table>),
+    Forced(Box<Forced>),
+    Gap(Box<Gap>),
 }
 
 impl Field {
@@ -192,10 +196,14 @@ impl Field {
         Ok(Field(Kind::Table(Box::new(table))))
     }
 
-    /// Whether it defines a tensor by itself; a boundary layer without a size along its curves only limits other
-    /// fields.
+    /// Whether it defines a tensor by itself; a boundary layer without a size along its curves and narrow gaps only
+    /// limit other fields.
     fn is_tensor(&self) -> bool {
-        !matches!(&self.0, Kind::BoundaryLayer(layer, _) if !layer.is_tensor())
+        match &self.0 {
+            Kind::BoundaryLayer(layer, _) => layer.is_tensor(),
+            Kind::Gap(_) => false,
+            _ => true,
+        }
     }
 
     /// The field's metric at a point, intersected with that of the fields before it.
@@ -205,8 +213,14 @@ impl Field {
             Kind::Uniform(m) => *m,
             Kind::Formula(field) => field.metric(place)?,
             Kind::Table(table) => table.metric(place.chart).ok_or_else(|| nowhere(place, ""))?,
+            Kind::Forced(field) => field.metric(place.xyz).ok_or_else(|| nowhere(place, ""))?,
             Kind::BoundaryLayer(layer, origin) => {
                 return layer.intersect(others, place.uv, place.xyz).ok_or_else(|| nowhere(place, origin));
+            }
+            Kind::Gap(gap) => {
+                let limited = gap.limit(others, place.xyz).ok_or_else(|| nowhere(place, ""))?;
+                // A gap too narrow for a tensor is left to the other fields.
+                return Ok(others.filter(|_| !is_representable(&limited)).unwrap_or(limited));
             }
             Kind::Distance(field, origin) => field.metric(place.uv, place.xyz).ok_or_else(|| nowhere(place, origin))?,
             Kind::Curvature(field) => field.metric(place.bend.as_ref()),
@@ -257,6 +271,17 @@ impl Sizing {
     #[must_use]
     pub fn on(self, atlas: Option<Arc<Atlas>>) -> Sizing {
         Sizing { atlas, ..self }
+    }
+
+    /// The same metric, intersected with sizes that are forced, from which sizes grow by `gradation` over a unit length
+    /// (docs/algorithm.md, "Forced spacing"), and with the widths of narrow gaps.
+    #[must_use]
+    pub(in crate::core) fn forced(&self, sides: &[ForcedSide], gaps: &[Rungs], gradation: f64) -> Sizing {
+        let forced = (!sides.is_empty()).then(|| Forced::new(sides, gradation, self.size_scale));
+        let gap = Gap::new(gaps, gradation, self.size_scale);
+        let more = [forced.map(|field| Kind::Forced(Box::new(field))), gap.map(|field| Kind::Gap(Box::new(field)))];
+        let fields = self.fields.iter().cloned().chain(more.into_iter().flatten().map(Field)).collect();
+        Sizing::new(fields, self.size_scale).on(self.atlas.clone())
     }
 
     /// The surfaces; `None` in a planar domain.

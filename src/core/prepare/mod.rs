@@ -2,13 +2,16 @@
 
 mod graded;
 mod layers;
+mod need;
 mod of_domain;
 mod of_elements;
 mod of_mesh;
+mod spacing;
 
 use of_domain::{FileLines, from_domain, shape_limits};
 use of_elements::from_elements;
 use of_mesh::from_mesh;
+pub use spacing::{Forced, NarrowGaps, Spacing};
 
 use crate::core::background::Adapted;
 use crate::core::case::{Case, DomainSource};
@@ -34,6 +37,8 @@ pub struct Background {
     pub adapted: Adapted,
     /// Repairs of a given mesh, as readable phrases.
     pub repairs: Vec<String>,
+    /// What the boundary makes of the sizes that are asked for.
+    pub spacing: Spacing,
 }
 
 /// Makes the background mesh of a case.
@@ -53,7 +58,7 @@ pub fn background(case: &Case, watch: &mut dyn Watch) -> Result<Background, Faul
     };
     let (made, kind) = match &case.domain {
         DomainSource::Curves { curves, faces } => {
-            let domain = Domain::build(curves.clone(), faces.clone());
+            let domain = Domain::build_within(curves.clone(), faces.clone(), case.tolerance);
             (domain.and_then(|domain| domain.with_points(&case.points)).and_then(whole), FaultKind::Geometry)
         }
         DomainSource::Surfaces(spec) => (complex::build(spec).and_then(whole), FaultKind::Geometry),

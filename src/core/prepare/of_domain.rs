@@ -5,16 +5,17 @@ use std::sync::Arc;
 use glam::DVec2;
 
 use super::graded::bounded;
+use super::need::allow_sizes;
+use super::spacing::{Divided, divided};
 use super::{Background, layers};
 use crate::core::background::adapt::adapt;
-use crate::core::background::triangulate::divide_and_triangulate;
-use crate::core::background::{Adapted, DividedDomain};
+use crate::core::background::triangulate::divide_by;
+use crate::core::background::{Adapted, DividedDomain, Division};
 use crate::core::case::Case;
 use crate::core::discrete::lines::PointGroups;
 use crate::core::fault::{Fault, FaultKind};
 use crate::core::geometry::{Domain, Line, PointSpec, ShapeLimits};
-use crate::core::mesh::{Embedding, Mesh, Named, Names, PointId, TriangleSet};
-use crate::core::metric::measure::triangle_area;
+use crate::core::mesh::{Embedding, Mesh, Named, Names, PointId};
 use crate::core::metric::{Field, FieldSpec, MetricSource, Sizing};
 use crate::core::progress::{Stage, Watch};
 use crate::core::soup::Repair;
@@ -49,10 +50,17 @@ pub(super) fn from_domain(
     sizing.survey(&domain.sample_points(SURVEYED), &|p| domain.inside(p).is_some())?;
     let layered =
         layers::layered_curves(&domain, &case.parameters).map_err(|fault| fault.of_kind(FaultKind::Parameter))?;
-    let mut made = adapted_mesh(case, &domain, &sizing, watch)?;
+    watch.tell(Stage::Triangulate, 0, 0);
+    let first = divided(&domain, &sizing, case.gradation)?;
+    sizing = first.sizing.clone();
+    let (spacing, gaps) = (first.spacing.clone(), first.gaps.clone());
+    let mut made = adapted_mesh(case, &domain, first, watch)?;
     if let Some(beta) = case.gradation {
         sizing = Sizing::new(vec![bounded(&made.mesh, &sizing, beta)?], 1.0).on(atlas);
-        made = adapted_mesh(case, &domain, &sizing, watch)?;
+        watch.tell(Stage::Triangulate, 0, 0);
+        let (divided, set) = divide_by(Division::measure(&domain, &sizing)?.across(&gaps)?)?;
+        let again = Divided { divided, set, sizing: sizing.clone(), spacing: spacing.clone(), gaps };
+        made = adapted_mesh(case, &domain, again, watch)?;
     }
     if let Some(curves) = layered {
         layers::offset_only(&mut made.mesh, &made.divided, &curves, case.parameters.layers);
@@ -65,8 +73,10 @@ pub(super) fn from_domain(
     let own = case.points.iter().map(|point| vec![Some(Named::new(&point.name))]);
     names.further.points = named_points(&lines.points.unwrap_or_else(|| own.collect()), &made.hard);
     let mut repairs = Vec::new();
+    Repair::RepeatedPoint.report(domain.merged_points, &mut repairs);
+    Repair::JoinedEnd.report(domain.joined_ends, &mut repairs);
     Repair::ShapedCurve.report(made.divided.shaped, &mut repairs);
-    Ok(Background { mesh: made.mesh, sizing, names, adapted: made.adapted, repairs })
+    Ok(Background { mesh: made.mesh, sizing, names, adapted: made.adapted, repairs, spacing })
 }
 
 /// The lines and hard points of the file of a domain.
@@ -121,11 +131,10 @@ fn size_at(point: &PointSpec, extent: f64) -> Result<Option<Field>, Fault> {
     Field::compile(&spec, &|_| Some(line.clone())).map(Some)
 }
 
-fn adapted_mesh(case: &Case, domain: &Domain, sizing: &Sizing, watch: &mut dyn Watch) -> Result<AdaptedMesh, Fault> {
-    watch.tell(Stage::Triangulate, 0, 0);
-    let (divided, set) = divide_and_triangulate(domain, sizing)?;
+fn adapted_mesh(case: &Case, domain: &Domain, of: Divided, watch: &mut dyn Watch) -> Result<AdaptedMesh, Fault> {
+    let Divided { divided, set, sizing, .. } = of;
     let metric = set.uv.iter().map(|&uv| sizing.metric(uv)).collect::<Result<_, _>>()?;
-    check_size(&set, sizing, case.parameters.max_quads)?;
+    allow_sizes(&set, &sizing, &case.parameters, watch)?;
     watch.tell(Stage::Adapt, 0, 0);
     // A unit mesh has about 2.3 triangles for each quadrilateral that the metric asks for (docs/algorithm.md,
     // "Adaptation to the metric").
@@ -135,23 +144,6 @@ fn adapted_mesh(case: &Case, domain: &Domain, sizing: &Sizing, watch: &mut dyn W
     if let Some(spatial) = &domain.spatial {
         mesh.set_embedding(Arc::new(Embedding { atlas: Arc::clone(&spatial.atlas), points: set.xyz }));
     }
-    let (mesh, adapted) = adapt(mesh, sizing, most, watch)?;
+    let (mesh, adapted) = adapt(mesh, &sizing, most, watch)?;
     Ok(AdaptedMesh { mesh, adapted, divided, lines: set.lines, hard })
-}
-
-/// Refuses sizes that ask for far more quadrilaterals than are allowed before any memory is spent on them. The count is
-/// the metric area (docs/algorithm.md, "Adaptation to the metric"), one place a triangle of the boundary's
-/// triangulation: rough, so that only what is beyond doubt is refused here. The adaptation itself holds the bound.
-fn check_size(set: &TriangleSet, sizing: &Sizing, max_quads: u64) -> Result<(), Fault> {
-    let mut quads = 0.0;
-    for triangle in &set.triangles {
-        let [a, b, c] = triangle.map(|n| set.uv[n as usize]);
-        quads += triangle_area(&sizing.metric((a + b + c) / 3.0)?, a, b, c);
-    }
-    if quads <= 4.0 * max_quads as f64 {
-        return Ok(());
-    }
-    Err(Fault::new(format!("The metric requires about {quads:.1e} quadrilaterals, but max_quads is {max_quads}"))
-        .of_kind(FaultKind::Limit)
-        .remedy("Increase the sizes or max_quads"))
 }

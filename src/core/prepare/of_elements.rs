@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use super::Background;
+use super::{Background, Spacing};
 use crate::core::background::Adapted;
 use crate::core::background::import::import;
 use crate::core::case::Case;
@@ -54,5 +54,12 @@ pub(super) fn from_elements(
     }
     mesh.commit();
     let names = Names::of_faces(imported.regions);
-    Ok(Background { mesh, sizing, names, adapted: Adapted::default(), repairs: Vec::new() })
+    Ok(Background {
+        mesh,
+        sizing,
+        names,
+        adapted: Adapted::default(),
+        repairs: Vec::new(),
+        spacing: Spacing::default(),
+    })
 }

@@ -4,9 +4,10 @@ use std::sync::Arc;
 
 use glam::DVec2;
 
-use super::Background;
 use super::graded::bounded;
+use super::need::allow_triangles;
 use super::of_domain::{FileLines, from_domain, named_points, shape_limits};
+use super::{Background, Spacing};
 use crate::core::background::Adapted;
 use crate::core::background::implied_metric::implied_metric;
 use crate::core::background::import::import;
@@ -48,6 +49,7 @@ pub(super) fn from_mesh(
     }
     let imported = import(&file, case.split_odd).map_err(|fault| fault.at(place.clone()))?;
     let set = &imported.set;
+    allow_triangles(set.triangles.len(), watch)?;
     let mut fields = Vec::new();
     for spec in &case.fields {
         fields.push(Field::compile(spec, &|_| None)?);
@@ -79,7 +81,14 @@ pub(super) fn from_mesh(
     }
     let mut names = Names::of_faces(imported.regions).with_lines(imported.lines, imported.set.lines);
     names.further = imported.further;
-    Ok(Background { mesh, sizing, names, adapted: Adapted::default(), repairs: imported.repairs })
+    Ok(Background {
+        mesh,
+        sizing,
+        names,
+        adapted: Adapted::default(),
+        repairs: imported.repairs,
+        spacing: Spacing::default(),
+    })
 }
 
 /// A mesh as a surface without CAD: its shape remeshed, or its own triangles, chart by chart. Sizes are those of the
@@ -120,6 +129,7 @@ fn from_surface(
     let further = surface.groups_by_place(file, &mesh, &mut repairs);
     let lines = FileLines { names: lines, of_curve: surface.lines.clone(), points: Some(points) };
     let made = if converts {
+        allow_triangles(mesh.triangles.len(), watch)?;
         from_own_triangles(case, &mesh, &surface, fields, lines, &mut repairs)
     } else {
         let mut domain = surface.domain;
@@ -165,5 +175,12 @@ fn from_own_triangles(
     let hard: Vec<_> = set.hard.iter().map(|&(node, number)| (number, set.point[node as usize])).collect();
     let mut names = Names::default().with_lines(lines.names, set.lines);
     names.further.points = named_points(&lines.points.unwrap_or_default(), &hard);
-    Ok(Background { mesh, sizing, names, adapted: Adapted::default(), repairs: Vec::new() })
+    Ok(Background {
+        mesh,
+        sizing,
+        names,
+        adapted: Adapted::default(),
+        repairs: Vec::new(),
+        spacing: Spacing::default(),
+    })
 }

@@ -14,6 +14,7 @@ use crate::core::fault::Fault;
 use crate::core::geometry::Atlas;
 use crate::core::mesh::{ElementId, Mesh, Named, Names, PointId};
 use crate::core::metric::Sizing;
+use crate::core::metric::straight_quad::StraightQuad;
 use crate::core::run::Births;
 use crate::core::soup::mesh_file::{BUILT_IN, ELEMENT_ID, FRONT, NODE_ID};
 use crate::core::soup::{Data, Group, MeshFile};
@@ -89,8 +90,9 @@ impl Export {
     }
 
     /// Adds data. Elements get `quality` (in the metric, docs/algorithm.md, "Quality") and `face` (numbered from 1),
-    /// and with `births` from a run, `level` and `step`, the step that made them (-1 for triangles). Points get the
-    /// metric and the position in the parametric plane (of a point on several faces, in the first).
+    /// and with `births` from a run, `level` and `step`, the step that made them (-1 for triangles). Where there are
+    /// quadrilaterals they get Verdict's measures by their own names (-1 for triangles). Points get the metric and the
+    /// position in the parametric plane (of a point on several faces, in the first).
     ///
     /// # Errors
     /// A point without a metric.
@@ -110,6 +112,15 @@ impl Export {
         if let Some(births) = births {
             add("level", &|e| f64::from(mesh.level(e)));
             add("step", &|e| births.step(e).map_or(-1.0, |step| step as f64));
+        }
+        if !dead.is_empty() {
+            let of = |e: ElementId, measure: fn(&StraightQuad) -> f64| {
+                if mesh.is_quad(e) { measure(&StraightQuad(mesh.quad(e).map(|n| mesh.xyz(n)))) } else { -1.0 }
+            };
+            add("scaled_jacobian", &|e| of(e, StraightQuad::scaled_jacobian));
+            add("aspect_ratio", &|e| of(e, StraightQuad::aspect_ratio));
+            add("skew", &|e| of(e, StraightQuad::skew));
+            add("warpage", &|e| of(e, StraightQuad::warpage));
         }
         self.file.metric = Some(self.chart.iter().map(|&p| sizing.metric3_at(p)).collect::<Result<_, _>>()?);
         self.file.uv = Some(self.chart.clone());

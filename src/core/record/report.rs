@@ -16,7 +16,8 @@ use super::statistics::{Angles, Range, Statistics};
 use crate::core::case::{Case, Parameters};
 use crate::core::convert::Converted;
 use crate::core::fault::Fault;
-use crate::core::kernel::number::{counted, grouped};
+use crate::core::kernel::number::{counted, grouped, size};
+use crate::core::prepare::Spacing;
 use crate::core::progress::Stage;
 
 /// The report of a conversion.
@@ -34,7 +35,8 @@ pub struct Report {
     pub background_triangles: usize,
     /// Number of faces (regions).
     pub regions: usize,
-    /// Whether the mesh passes all checks: only quadrilaterals, conforming, strictly convex by exact predicates.
+    /// Whether the mesh passes all checks: only quadrilaterals, conforming, strictly convex by exact predicates, and on
+    /// surfaces against the mean normal of each.
     pub valid: bool,
     /// Statistics of the mesh.
     pub mesh: Statistics,
@@ -45,6 +47,9 @@ pub struct Report {
     pub last_resort: LastResort,
     /// Repairs of a given mesh, as readable phrases.
     pub repairs: Vec<String>,
+    /// What the boundary makes of the sizes that are asked for; left out where it makes nothing of them.
+    #[serde(skip_serializing_if = "Spacing::is_plain")]
+    pub spacing: Spacing,
     /// Number of events by kind.
     pub events: BTreeMap<String, u64>,
     /// Seconds by stage: the only value that differs between two runs of the same case.
@@ -134,6 +139,7 @@ impl Report {
             on_surfaces: converted.mesh.embedding().is_some(),
             last_resort: LastResort::of(resort, (converted.counts.formed + converted.counts.closed) as usize + resort),
             repairs: converted.repairs.clone(),
+            spacing: converted.spacing.clone(),
             events: counts::events(converted),
             timing: Vec::new(),
         })
@@ -187,6 +193,19 @@ impl Report {
                 ),
             );
         }
+        if let Some(verdict) = mesh.verdict {
+            row(
+                "by Verdict",
+                format!(
+                    "scaled Jacobian at least {:.3}, aspect ratio at most {}, skew at most {:.3}, \
+                     warpage at least {:.3}",
+                    verdict.scaled_jacobian.min,
+                    size(verdict.aspect_ratio.max),
+                    verdict.skew.max,
+                    verdict.warpage.min
+                ),
+            );
+        }
         row(
             "last resort",
             format!(
@@ -196,7 +215,7 @@ impl Report {
                 100.0 * self.last_resort.share
             ),
         );
-        rows_of_work(&mut text, &self.repairs, &self.timing);
+        rows_of_work(&mut text, &self.repairs, &self.spacing, &self.timing);
         text
     }
 }
@@ -207,8 +226,11 @@ fn row(text: &mut String, head: &str, value: &str) {
     let _ = writeln!(text, "  {head:<16} {value}");
 }
 
-/// Writes the last rows of a summary: repairs and times.
-fn rows_of_work(text: &mut String, repairs: &[String], timing: &[(Stage, f64)]) {
+/// Writes the last rows of a summary: spacing, repairs and times.
+fn rows_of_work(text: &mut String, repairs: &[String], spacing: &Spacing, timing: &[(Stage, f64)]) {
+    for phrase in spacing.phrases() {
+        row(text, "spacing", &phrase);
+    }
     for repair in repairs {
         row(text, "repaired", repair);
     }
@@ -244,14 +266,20 @@ impl Formatter for ListsOnOneLine {
 }
 
 /// The summary of a background mesh: counts, edge lengths and quality.
-pub fn background_summary(case: &Case, mesh: &Statistics, repairs: &[String], timing: &[(Stage, f64)]) -> String {
+pub fn background_summary(
+    case: &Case,
+    mesh: &Statistics,
+    repairs: &[String],
+    spacing: &Spacing,
+    timing: &[(Stage, f64)],
+) -> String {
     let quality = mesh.quality.map_or_else(|| "\u{2013}".to_owned(), range);
     let mut text = format!("{}: {}\n", case.name, case.title);
     let nodes = counted(mesh.nodes as u64, "node");
     row(&mut text, "background", &format!("{}, {nodes}", counted(mesh.triangles as u64, "triangle")));
     row(&mut text, "edge length", &lengths(mesh));
     row(&mut text, "quality, metric", &quality);
-    rows_of_work(&mut text, repairs, timing);
+    rows_of_work(&mut text, repairs, spacing, timing);
     text
 }
 
@@ -378,6 +406,7 @@ mod tests {
             on_surfaces: false,
             last_resort: LastResort::of(3, 3),
             repairs: vec!["2 clockwise triangles were reversed".to_owned()],
+            spacing: Spacing::default(),
             events: BTreeMap::from([("front_seam".to_owned(), 2), ("front_step".to_owned(), 31)]),
             timing: vec![(Stage::Adapt, 0.25), (Stage::Convert, 1.5)],
         }
@@ -417,6 +446,10 @@ mod tests {
                 "jacobian.mean" => ("/mesh/metric_scaled_jacobian/mean", 1.0),
                 "space.jacobian.min" => ("/mesh/physical_scaled_jacobian/min", 1.0),
                 "space.jacobian.mean" => ("/mesh/physical_scaled_jacobian/mean", 1.0),
+                "verdict.jacobian.min" => ("/mesh/verdict/scaled_jacobian/min", 1.0),
+                "verdict.aspect.max" => ("/mesh/verdict/aspect_ratio/max", 1.0),
+                "verdict.skew.max" => ("/mesh/verdict/skew/max", 1.0),
+                "verdict.warpage.min" => ("/mesh/verdict/warpage/min", 1.0),
                 "last_resort" => ("/last_resort/quads", 1.0),
                 "steps" => ("/events/front_step", 1.0),
                 "rolled_back" => ("/events/front_rolled_back", 1.0),

@@ -10,6 +10,7 @@ use crate::core::mesh::{FULL_TURN, PointId, twelfths};
 use crate::core::metric::measure::{
     angle, angles_in_space, length_exact, quad_quality, scaled_jacobian, triangle_quality,
 };
+use crate::core::metric::straight_quad::StraightQuad;
 use crate::core::metric::{BadMetric, MetricSource};
 
 /// Number of angle classes, each 10 degrees wide; the last has no upper limit.
@@ -70,6 +71,8 @@ pub struct Statistics {
     /// Physical scaled Jacobian of the quadrilaterals, on surfaces in the tangent planes of the corners, minimum over
     /// the corners; `None` without quadrilaterals.
     pub physical_scaled_jacobian: Option<Range>,
+    /// What Verdict, the library of VTK and ParaView, says of the quadrilaterals; `None` without quadrilaterals.
+    pub verdict: Option<VerdictSpreads>,
     /// Shape in the metric (docs/algorithm.md, "Quality"): 1 for the square and the equilateral triangle.
     pub quality: Option<Range>,
 }
@@ -81,6 +84,31 @@ pub struct Range {
     pub min: f64,
     /// The mean.
     pub mean: f64,
+}
+
+/// Minimum, maximum and mean.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Spread {
+    /// The minimum.
+    pub min: f64,
+    /// The maximum.
+    pub max: f64,
+    /// The mean.
+    pub mean: f64,
+}
+
+/// Verdict's measures of all quadrilaterals, from the coordinates of their corners
+/// ([`VerdictMeasures`](crate::core::metric::straight_quad::VerdictMeasures)).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct VerdictSpreads {
+    /// Scaled Jacobian: above 0 in elements that solvers accept.
+    pub scaled_jacobian: Spread,
+    /// Aspect ratio, from 1.
+    pub aspect_ratio: Spread,
+    /// Skew, from 0.
+    pub skew: Spread,
+    /// Warpage: 1 where elements are flat.
+    pub warpage: Spread,
 }
 
 /// A distribution of corner angles, in degrees.
@@ -161,6 +189,7 @@ impl Statistics {
             tally.quality.add(quad_quality(m.each_ref(), p));
             tally.metric_jacobian.add(scaled_jacobian(&m, p));
             tally.physical_jacobian.add(scaled_jacobian(&quad.map(seen), p));
+            tally.verdict.add(&StraightQuad(quad.map(xyz)));
         }
         let (edges, interior) = edges_and_interior(&mesh);
         let lengths = edges.iter().map(|[a, b]| length_exact(source, mesh.uv[*a as usize], mesh.uv[*b as usize]));
@@ -179,6 +208,7 @@ impl Statistics {
             irregular: irregular(&mesh, &interior),
             metric_scaled_jacobian: tally.metric_jacobian.range(),
             physical_scaled_jacobian: tally.physical_jacobian.range(),
+            verdict: tally.verdict.spreads(),
             quality: tally.quality.range(),
         })
     }
@@ -236,6 +266,7 @@ struct Tally {
     quality: RangeTally,
     metric_jacobian: RangeTally,
     physical_jacobian: RangeTally,
+    verdict: VerdictTally,
 }
 
 impl Tally {
@@ -251,17 +282,51 @@ struct RangeTally {
     count: u64,
     sum: f64,
     min: f64,
+    max: f64,
 }
 
 impl RangeTally {
     fn add(&mut self, value: f64) {
-        self.min = if self.count == 0 { value } else { self.min.min(value) };
+        let is_first = self.count == 0;
+        self.min = if is_first { value } else { self.min.min(value) };
+        self.max = if is_first { value } else { self.max.max(value) };
         self.count += 1;
         self.sum += value;
     }
 
     fn range(&self) -> Option<Range> {
-        (self.count > 0).then(|| Range { min: self.min, mean: self.sum / self.count as f64 })
+        self.spread().map(|Spread { min, mean, .. }| Range { min, mean })
+    }
+
+    fn spread(&self) -> Option<Spread> {
+        (self.count > 0).then(|| Spread { min: self.min, max: self.max, mean: self.sum / self.count as f64 })
+    }
+}
+
+#[derive(Default)]
+struct VerdictTally {
+    scaled_jacobian: RangeTally,
+    aspect_ratio: RangeTally,
+    skew: RangeTally,
+    warpage: RangeTally,
+}
+
+impl VerdictTally {
+    fn add(&mut self, quad: &StraightQuad) {
+        let measures = quad.measures();
+        self.scaled_jacobian.add(measures.scaled_jacobian);
+        self.aspect_ratio.add(measures.aspect_ratio);
+        self.skew.add(measures.skew);
+        self.warpage.add(measures.warpage);
+    }
+
+    fn spreads(&self) -> Option<VerdictSpreads> {
+        Some(VerdictSpreads {
+            scaled_jacobian: self.scaled_jacobian.spread()?,
+            aspect_ratio: self.aspect_ratio.spread()?,
+            skew: self.skew.spread()?,
+            warpage: self.warpage.spread()?,
+        })
     }
 }
 

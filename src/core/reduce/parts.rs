@@ -10,8 +10,10 @@ use super::search::Search;
 use crate::core::fault::Fault;
 
 /// Keys of a case that have a default.
-pub(super) const OPTIONS: [&str; 9] = [
+pub(super) const OPTIONS: [&str; 11] = [
     "gradation",
+    "corner_angle",
+    "tolerance",
     "chord",
     "least_segments",
     "split_odd",

@@ -22,6 +22,8 @@ pub(in crate::core) enum Repair {
     DividedInterface,
     DividedSegment,
     DividedSide,
+    RepeatedPoint,
+    JoinedEnd,
 }
 
 /// Why sides of triangles are divided.
@@ -49,6 +51,8 @@ impl Repair {
             Repair::ShapedCurve => ["curve", "curves", "divided more finely than the sizes ask, to keep the shape"],
             Repair::DividedInterface => ["side between parts", "sides between parts", EVEN],
             Repair::DividedSegment => ["boundary segment", "boundary segments", EVEN],
+            Repair::RepeatedPoint => ["repeated point of a polyline", "repeated points of polylines", "merged"],
+            Repair::JoinedEnd => ["end of a curve", "ends of curves", "moved to where another one ends"],
             Repair::DividedSide => ["side of a triangle", "sides of triangles", "divided to make counts even"],
         }
     }

@@ -4,6 +4,7 @@ use super::super::discretise::tests::{Stretched, Uniform};
 use super::*;
 use crate::core::geometry::fixtures::*;
 use crate::core::kernel::predicates::orient;
+use crate::core::metric::MetricSource;
 
 fn area(set: &TriangleSet) -> f64 {
     let corner = |n: u32| set.uv[n as usize];

@@ -2,7 +2,7 @@
 
 use super::Report;
 use crate::core::kernel::condition::{Field, Holds};
-use crate::core::record::statistics::Range;
+use crate::core::record::statistics::{Range, VerdictSpreads};
 
 /// Whether less or more of a figure is better.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -79,6 +79,10 @@ figures! {
     "jacobian.mean", "", More, "mean scaled Jacobian, metric" => |r| mean(r.mesh.metric_scaled_jacobian);
     "space.jacobian.min", "", More, "least scaled Jacobian, in space" => |r| least(r.mesh.physical_scaled_jacobian);
     "space.jacobian.mean", "", More, "mean scaled Jacobian, in space" => |r| mean(r.mesh.physical_scaled_jacobian);
+    "verdict.jacobian.min", "", More, "least scaled Jacobian, Verdict" => |r| verdict(r).map(|v| v.scaled_jacobian.min);
+    "verdict.aspect.max", "", Less, "greatest aspect ratio, Verdict" => |r| verdict(r).map(|v| v.aspect_ratio.max);
+    "verdict.skew.max", "", Less, "greatest skew, Verdict" => |r| verdict(r).map(|v| v.skew.max);
+    "verdict.warpage.min", "", More, "least warpage, Verdict, 1 where flat" => |r| verdict(r).map(|v| v.warpage.min);
     "last_resort", "", Less, "quadrilaterals made by the last resort" => |r| count(r.last_resort.quads);
     "steps", "", Less, "steps of the front" => |r| event(r, "front_step");
     "rolled_back", "", Less, "attempts rolled back" => |r| event(r, "front_rolled_back");
@@ -102,6 +106,10 @@ fn least(range: Option<Range>) -> Option<f64> {
 
 fn mean(range: Option<Range>) -> Option<f64> {
     range.map(|range| range.mean)
+}
+
+fn verdict(report: &Report) -> Option<VerdictSpreads> {
+    report.mesh.verdict
 }
 
 fn event(report: &Report, kind: &str) -> Option<f64> {

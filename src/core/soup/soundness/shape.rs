@@ -1,21 +1,17 @@
-//! The shape of each element: area, orientation, convexity. On a surface, corners are compared with the surface normal.
-//! A file has none, so a direction with which all corners of one group around the node agree replaces it, if one
-//! exists. A corner that agrees with its own quadrilateral passes as well.
+//! The shape of each element: area, orientation, convexity. In space a quadrilateral is convex if every corner turns
+//! the way of its own mean normal: its Jacobians there are positive, as solvers need it.
 
 use glam::{DVec2, DVec3};
-use rustc_hash::FxHashMap;
-use smallvec::SmallVec;
 
 use super::faces::Faces;
 use super::{Defect, Found, Soundness};
 use crate::core::kernel::predicates::orient;
+use crate::core::metric::straight_quad::StraightQuad;
 
 /// An element whose area is below this fraction of its longest side squared counts as zero.
 const ZERO_AREA: f64 = 1e-9;
-/// A corner of a curved quadrilateral is convex if its sine exceeds this.
+/// A corner of a quadrilateral in space is convex if its sine against the mean normal exceeds this.
 const FLAT: f64 = 1e-12;
-/// Iterations of the search for a normal at a node.
-const PATIENCE: usize = 200;
 
 /// Notes elements without area, inverted ones and quadrilaterals that are not strictly convex; sets `planar` and
 /// `area`. Returns whether the mesh as a whole is oriented anticlockwise in the plane.
@@ -32,7 +28,6 @@ pub fn examine(faces: &Faces, soundness: &mut Soundness, found: &mut Found) -> b
     }
     soundness.planar = height.0 == height.1;
     let anticlockwise = sum >= 0.0;
-    let normals = if soundness.planar { Normals::default() } else { normals(faces) };
     for element in 0..faces.len() {
         let corners = faces.corners(element);
         let double = normal(faces, corners);
@@ -43,7 +38,7 @@ pub fn examine(faces: &Faces, soundness: &mut Soundness, found: &mut Found) -> b
         } else if soundness.planar {
             in_plane(faces, corners, anticlockwise)
         } else {
-            on_surface(faces, corners, double / (2.0 * area), &|node| normals[&(node, faces.tag(element))])
+            in_space(faces, corners)
         };
         if let Some(defect) = defect {
             found.note(defect, element, faces.point(corners[0]));
@@ -55,7 +50,10 @@ pub fn examine(faces: &Faces, soundness: &mut Soundness, found: &mut Found) -> b
 /// Twice the (mean) area vector.
 fn normal(faces: &Faces, corners: &[u32]) -> DVec3 {
     let p = |corner: usize| faces.point(corners[corner]);
-    if corners.len() == 3 { (p(1) - p(0)).cross(p(2) - p(0)) } else { (p(2) - p(0)).cross(p(3) - p(1)) }
+    if let &[a, b, c, d] = corners {
+        return StraightQuad([a, b, c, d].map(|node| faces.point(node))).double_area();
+    }
+    (p(1) - p(0)).cross(p(2) - p(0))
 }
 
 fn longest_squared(faces: &Faces, corners: &[u32]) -> f64 {
@@ -83,52 +81,9 @@ fn in_plane(faces: &Faces, corners: &[u32], anticlockwise: bool) -> Option<Defec
     }
 }
 
-/// A direction with which the corners agree, by node and group.
-type Normals = FxHashMap<(u32, u32), DVec3>;
-
-fn normals(faces: &Faces) -> Normals {
-    let mut corners_at: Vec<(u32, u32, u32)> = Vec::new();
-    for element in 0..faces.len() {
-        for (i, &node) in faces.corners(element).iter().enumerate() {
-            corners_at.push((node, faces.tag(element), (4 * element + i) as u32));
-        }
-    }
-    corners_at.sort_unstable();
-    let mut normals = Normals::default();
-    for group in corners_at.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)) {
-        let corners: SmallVec<[DVec3; 8]> = group
-            .iter()
-            .map(|&(_, _, h)| corner_normal(faces, faces.corners(h as usize / 4), h as usize % 4).normalize_or_zero())
-            .collect();
-        let mut normal = corners.iter().sum::<DVec3>().normalize_or_zero();
-        // If the mean fails, turn it towards the corner that agrees least (the perceptron rule, which converges if a
-        // direction exists).
-        for _ in 0..PATIENCE {
-            let worst = corners.iter().copied().min_by(|a, b| a.dot(normal).total_cmp(&b.dot(normal)));
-            let Some(worst) = worst.filter(|corner| corner.dot(normal) <= 1e-3) else { break };
-            normal = (normal + 0.3 * worst).normalize_or_zero();
-        }
-        normals.insert((group[0].0, group[0].1), normal);
-    }
-    normals
-}
-
-/// The normal at a corner; its length is the area of the parallelogram of the two sides.
-fn corner_normal(faces: &Faces, corners: &[u32], i: usize) -> DVec3 {
-    let count = corners.len();
-    let p = |corner: usize| faces.point(corners[corner % count]);
-    (p(i + 1) - p(i)).cross(p(i + count - 1) - p(i))
-}
-
-/// The defect of an element on a surface: each corner's normal against that of the surface there, or of the element.
-fn on_surface(faces: &Faces, corners: &[u32], own: DVec3, around: &dyn Fn(u32) -> DVec3) -> Option<Defect> {
-    let count = corners.len();
-    let p = |corner: usize| faces.point(corners[corner % count]);
-    let convex = (0..count).all(|i| {
-        let least = FLAT * p(i + 1).distance(p(i)) * p(i + count - 1).distance(p(i));
-        let corner = corner_normal(faces, corners, i);
-        let around = around(corners[i]);
-        corner.dot(own) > least || (corner.dot(around) > least && around.dot(own) > 0.0)
-    });
-    (!convex).then_some(Defect::NotConvex)
+/// The defect of an element in space; a triangle that has an area has none.
+fn in_space(faces: &Faces, corners: &[u32]) -> Option<Defect> {
+    let &[a, b, c, d] = corners else { return None };
+    let sines = StraightQuad([a, b, c, d].map(|node| faces.point(node))).corner_sines();
+    (!sines.iter().all(|&sine| sine > FLAT)).then_some(Defect::NotConvex)
 }

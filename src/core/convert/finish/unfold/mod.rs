@@ -101,7 +101,7 @@ impl<'a> Unfolding<'a> {
             let mut nodes: Vec<NodeId> = mesh.corners(element).collect();
             let how = if before >= FOLDED && self.coincident.binary_search(&node).is_ok() {
                 self.stirred(mesh, node).then_some(Mending::Moved)
-            } else if before < FOLDED && self.moved(mesh, element) {
+            } else if before < FOLDED && self.moved_or_nudged(mesh, element) {
                 Some(Mending::Moved)
             } else if before < FOLDED
                 && let Some(new) = self.rotated(mesh, element, None)

@@ -15,6 +15,10 @@ const ENOUGH: f64 = 0.1;
 const STEPS: [f64; 5] = [0.4, 0.2, 0.1, 0.05, 0.02];
 pub(super) const DIRECTIONS: [[f64; 2]; 8] =
     [[1.0, 0.0], [0.7, 0.7], [0.0, 1.0], [-0.7, 0.7], [-1.0, 0.0], [-0.7, -0.7], [0.0, -1.0], [0.7, -0.7]];
+/// The sines around a corner that is moved by little are this large, or the next.
+const NUDGED: [f64; 3] = [0.1, 0.05, 0.02];
+/// Steps of a search for such a place, by the metric at the corner.
+const NUDGES: [f64; 6] = [0.01, 0.02, 0.05, 0.1, 0.2, 0.4];
 /// Towards nodes around, the steps are by these parts of the way.
 const PARTS: [f64; 3] = [2.0, 0.1, 0.005];
 /// How often the nodes at hand are moved in turn.
@@ -30,6 +34,60 @@ enum Reach {
 }
 
 impl Unfolding<'_> {
+    /// Moves free corners of a quadrilateral: each in turn, or, where it is bent against its own mean normal alone, one
+    /// of them by little; the way that leaves the better shape in the metric, which asked for the places where they
+    /// are. Whether fewer elements around fold then; otherwise all is as before.
+    pub(super) fn moved_or_nudged(&self, mesh: &mut Mesh, element: ElementId) -> bool {
+        let corners = mesh.quad(element);
+        let least_quality = |mesh: &Mesh| {
+            let around = corners.iter().flat_map(|&n| mesh.elements_at(n));
+            around.map(|e| mesh.quality(e)).fold(f64::INFINITY, f64::min)
+        };
+        let mark = mesh.mark();
+        let Some((node, place, metric)) = self.nudge(mesh, element) else { return self.moved(mesh, element) };
+        mesh.move_node(node, place, metric);
+        let nudged = least_quality(mesh);
+        mesh.take_back(mark);
+        if self.moved(mesh, element) {
+            if least_quality(mesh) >= nudged {
+                return true;
+            }
+            mesh.take_back(mark);
+        }
+        mesh.move_node(node, place, metric);
+        true
+    }
+
+    /// The place of one free corner of a quadrilateral at which nothing around it folds and shapes in the metric are
+    /// best, for one that is bent against its own mean normal alone.
+    fn nudge(&self, mesh: &Mesh, element: ElementId) -> Option<(NodeId, DVec2, Metric2)> {
+        if mesh.least_surface_sine(element) < FOLDED {
+            return None;
+        }
+        let free: SmallVec<[NodeId; 4]> = mesh.corners(element).filter(|&n| !mesh.is_fixed(n)).collect();
+        NUDGED.into_iter().find_map(|enough| {
+            let mut best: Option<(f64, NodeId, DVec2, Metric2)> = None;
+            for &node in &free {
+                let (from, axes) = (mesh.uv(node), energy::unit_axes(&mesh.metric(node)));
+                let mut star = Star::of(mesh, node);
+                for [x, y] in NUDGES.iter().flat_map(|step| DIRECTIONS.map(|[x, y]| [x * step, y * step])) {
+                    let place = from + axes[0] * x + axes[1] * y;
+                    let is_free = mesh.can_move(node, place).is_ok();
+                    if !is_free || star.least_sine_at(mesh, place, self.near, enough) <= enough {
+                        continue;
+                    }
+                    let Ok(metric) = self.source.metric(place) else { continue };
+                    let around = mesh.fan(node).map(|h| mesh.quality_with(h, place, &metric));
+                    let quality = around.fold(f64::INFINITY, f64::min);
+                    if best.as_ref().is_none_or(|best| quality > best.0) {
+                        best = Some((quality, node, place, metric));
+                    }
+                }
+            }
+            best.map(|(_, node, place, metric)| (node, place, metric))
+        })
+    }
+
     /// Moves the free corners of a quadrilateral in turn, each to where the least sine around it is greatest. Whether
     /// fewer elements around fold then; otherwise all is as before.
     pub(super) fn moved(&self, mesh: &mut Mesh, element: ElementId) -> bool {
