@@ -262,3 +262,24 @@ fn sides_of_a_gap_that_cannot_have_equal_numbers_are_told() {
     let text = made.report.summary();
     assert!(text.contains("1 narrow gap, down to 0.1 wide; equal numbers of segments on both sides are not"), "{text}");
 }
+
+#[test]
+fn layers_in_gaps_are_as_many_as_asked_and_upright() {
+    let layers = "[[metric]]\nkind = \"gap\"\nlayers = 3\n";
+    let made = quads(&format!("{}{layers}", data("thin_tab.toml")));
+    let is_at = |y: f64| move |p: DVec2| (p.y - y).abs() < 1e-9 && p.x >= 10.0;
+    let below = count(&made.nodes, is_at(4.9));
+    assert_eq!(below, count(&made.nodes, is_at(5.0)));
+    let in_tab: Vec<_> = made.quads.iter().filter(|quad| quad.iter().all(|p| p.x > 12.0)).collect();
+    let columns = count(&made.nodes, |p| (p.y - 4.9).abs() < 1e-9 && p.x > 12.0) - 1;
+    assert_eq!(in_tab.len(), 3 * columns);
+    let [low, high] = extremes(in_tab);
+    assert!(low >= 60.0 && high <= 120.0, "{low} {high}");
+    let made = quads(&format!("{}{layers}", data("thin_annulus.toml")));
+    let outer = count(&made.nodes, |p| (p.length() - 1.0).abs() < 1e-6);
+    assert_eq!((made.quads.len(), made.report.mesh.irregular.irregular), (3 * outer, 0));
+    // Alone it is no size, and surfaces have no gaps.
+    let bare = data("thin_tab.toml");
+    let alone = bare.split("[[metric]]").next().unwrap();
+    assert!(refusal(&format!("{alone}{layers}")).contains("no metric"));
+}

@@ -33,7 +33,9 @@ use quadfront::core::progress::Nobody;
 use random::Random;
 
 /// A case that takes longer is told.
-const SLOW: Duration = Duration::from_secs(20);
+const SLOW: Duration = Duration::from_secs(10);
+/// So many of the slowest are told.
+const SLOWEST: usize = 10;
 /// Of so many cases one may be refused: curves that the generator puts too near to each other.
 const ONE_REFUSED_OF: usize = 30;
 
@@ -57,7 +59,8 @@ struct Tally {
     templates: usize,
     refused: BTreeMap<String, Vec<u64>>,
     broken: Vec<String>,
-    slowest: (Duration, u64),
+    /// Ascending.
+    slowest: Vec<(Duration, u64)>,
     largest: (usize, u64),
 }
 
@@ -74,7 +77,11 @@ impl Tally {
         if self.rounds.is_multiple_of(1000) {
             println!("{} rounds", self.rounds);
         }
-        self.slowest = self.slowest.max((took, seed));
+        self.slowest.push((took, seed));
+        self.slowest.sort_unstable();
+        if self.slowest.len() > SLOWEST {
+            self.slowest.remove(0);
+        }
         match outcome {
             Ok(Ok(kept)) => {
                 self.kept += 1;

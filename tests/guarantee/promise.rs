@@ -67,6 +67,7 @@ pub fn keep_by(case: &Case, prepare: &mut dyn FnMut(&mut Converter<'_>)) -> Resu
         }
     }
     same("sides on the boundary", &boundary(&triangles), &boundary(&quads))?;
+    same("hard points", &hard_points(&triangles), &hard_points(&quads))?;
     same("Euler numbers", &euler(&triangles), &euler(&quads))?;
     even_loops(&quads)?;
     for (region, area) in areas(&triangles) {
@@ -85,6 +86,15 @@ pub fn keep_by(case: &Case, prepare: &mut dyn FnMut(&mut Converter<'_>)) -> Resu
 
 fn same<T: PartialEq + std::fmt::Debug>(what: &str, before: &T, after: &T) -> Result<(), String> {
     if before == after { Ok(()) } else { Err(format!("{what} were {before:?} and are {after:?}")) }
+}
+
+/// The places and points of fixed nodes inside, sorted.
+fn hard_points(mesh: &Mesh) -> Vec<([u64; 2], u32)> {
+    let hard = mesh.nodes().filter(|&n| mesh.is_hard(n));
+    let mut all: Vec<_> =
+        hard.filter_map(|n| Some((mesh.uv(n).to_array().map(f64::to_bits), mesh.point(n)?.0))).collect();
+    all.sort_unstable();
+    all
 }
 
 /// Every side without a twin: places and points of its ends, and its region; sorted.

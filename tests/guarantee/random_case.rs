@@ -7,7 +7,10 @@ use glam::DVec2;
 
 use super::random::Random;
 use super::random_metric;
-use super::shape::{Curve, Frame, inside, on_circle};
+use super::shape::{Curve, Frame, inside, on_circle, to_segment};
+
+/// What the seed of a case is combined with for its hardship.
+const HARDSHIP: u64 = 0x6861_7264_7368_6970;
 
 /// Nothing is put nearer to anything else than this.
 const NEAR: f64 = 0.03;
@@ -17,6 +20,10 @@ pub struct Draft {
     pub frame: Frame,
     pub curves: Vec<(String, Curve, Option<usize>)>,
     pub faces: Vec<Face>,
+    /// Hard points and their sizes.
+    pub points: Vec<(DVec2, Option<f64>)>,
+    /// Where the case is to be a hard one, the source of what makes it so.
+    pub hardship: Option<Random>,
 }
 
 #[derive(Default)]
@@ -37,7 +44,9 @@ pub fn text(seed: u64) -> String {
     } else {
         Frame { origin: DVec2::ZERO, scale: 1.0, turn: 0.0 }
     };
-    let mut draft = Draft { frame, curves: Vec::new(), faces: Vec::new() };
+    let mut own = Random::new(seed ^ HARDSHIP);
+    let hardship = own.chance(0.5).then_some(own);
+    let mut draft = Draft { frame, curves: Vec::new(), faces: Vec::new(), points: Vec::new(), hardship };
     match r.whole(0, 9) {
         0 | 1 => draft.star(r),
         2 | 3 => draft.round_polygon(r),
@@ -47,6 +56,7 @@ pub fn text(seed: u64) -> String {
         7 => draft.rectangle(r),
         _ => draft.cells(r),
     }
+    draft.fix_counts();
     let metric = random_metric::text(r, &draft);
     format!("version = 1\n\n{metric}{}", draft.toml())
 }
@@ -71,7 +81,85 @@ impl Draft {
             }
             text += "\n";
         }
+        for (k, (p, size)) in self.points.iter().enumerate() {
+            let at = self.frame.place(*p);
+            text += &format!("[[point]]\nname = \"p{k}\"\nat = [{:?}, {:?}]\n", at.x, at.y);
+            text += &size.map_or(String::new(), |size| format!("size = {:?}\n", size * self.frame.scale));
+            text += "\n";
+        }
         text
+    }
+
+    /// Gives sides of some outlines numbers of segments that have nothing to do with the sizes.
+    fn fix_counts(&mut self) {
+        let Some(h) = &mut self.hardship else { return };
+        for face in self.faces.iter().filter(|face| face.outer.len() > 2) {
+            let name = &face.outer[h.whole(0, face.outer.len() - 1)];
+            let (is_wanted, n) = (h.chance(0.4), h.power(0.0, 1.7) as usize);
+            let curve = self.curves.iter_mut().find(|curve| curve.0 == *name);
+            if let (true, Some((_, curve, segments @ None))) = (is_wanted, curve)
+                && !matches!(curve, Curve::Path(path) if path.len() > 2)
+            {
+                *segments = Some(n.max(1));
+            }
+        }
+    }
+
+    /// Cuts corners off by tiny sides.
+    fn with_tiny_sides(&mut self, corners: Vec<DVec2>) -> Vec<DVec2> {
+        let Some(h) = &mut self.hardship else { return corners };
+        let n = corners.len();
+        let mut cut = Vec::new();
+        for (k, &corner) in corners.iter().enumerate() {
+            let [before, after] = [corners[(k + n - 1) % n], corners[(k + 1) % n]].map(|p| p - corner);
+            let tiny = h.power(-4.5, -1.5) * before.length().min(after.length());
+            if h.chance(0.15) {
+                cut.extend([before, after].map(|side| corner + side.normalize() * tiny));
+            } else {
+                cut.push(corner);
+            }
+        }
+        cut
+    }
+
+    /// Puts holes all but at the outline, slits, and hard points into a face.
+    fn make_hard(&mut self, polygon: &[DVec2], discs: &[(DVec2, f64)], face: &mut Face) {
+        let Some(mut h) = self.hardship.take() else { return };
+        let mut taken = discs.to_vec();
+        let walls = |p: DVec2| {
+            let n = polygon.len();
+            (0..n).map(|k| to_segment(p, polygon[k], polygon[(k + 1) % n])).fold(f64::INFINITY, f64::min)
+        };
+        for _ in 0..h.whole(0, 12) {
+            let p = DVec2::new(h.range(-1.3, 1.3), h.range(-1.3, 1.3));
+            let room = taken.iter().map(|(q, radius)| q.distance(p) - radius).fold(walls(p), f64::min);
+            if !inside(polygon, p) || room < NEAR {
+                continue;
+            }
+            // Chords of curves are off by less than a thousandth.
+            let radius = if h.chance(0.6) { room - h.power(-3.0, -1.5).min(0.5 * room) } else { 0.5 * room };
+            let a = h.range(0.0, TAU);
+            if h.chance(0.6) {
+                face.holes.push(vec![self.add(Curve::circle(p, radius, a), None)]);
+            } else {
+                let (along, across) = (on_circle(DVec2::ZERO, 0.9 * radius, a), h.power(-3.0, -1.0) * radius);
+                let across = along.perp().normalize() * across;
+                let corners = [along + across, along - across, -along - across, -along + across].map(|c| p + c);
+                let path = [corners.as_slice(), &corners[..1]].concat();
+                face.holes.push(vec![self.add(Curve::Path(path), None)]);
+            }
+            taken.push((p, radius));
+        }
+        for _ in 0..h.whole(0, 8) {
+            let p = DVec2::new(h.range(-1.3, 1.3), h.range(-1.3, 1.3));
+            let size = h.chance(0.3).then(|| h.power(-2.5, -0.5));
+            let is_free = taken.iter().all(|(q, radius)| q.distance(p) > *radius);
+            if is_free && inside(polygon, p) && walls(p) > 2e-3 {
+                self.points.push((p, size));
+                taken.push((p, 1e-3));
+            }
+        }
+        self.hardship = Some(h);
     }
 
     fn add(&mut self, curve: Curve, segments: Option<usize>) -> String {
@@ -154,6 +242,7 @@ impl Draft {
 
     /// A face with these corners, anticlockwise; `turn` says by how much each side bulges.
     fn polygon(&mut self, r: &mut Random, corners: Vec<DVec2>, turn: impl Fn(&mut Random, usize) -> f64) {
+        let corners = self.with_tiny_sides(corners);
         let n = corners.len();
         let mut face = Face::default();
         let mut polygon = Vec::new();
@@ -315,6 +404,7 @@ impl Draft {
             discs.push((p, radius));
             self.thing(r, p, radius, face);
         }
+        self.make_hard(polygon, &discs, face);
     }
 
     /// Something within a disc.

@@ -140,3 +140,10 @@ pub fn inside(polygon: &[DVec2], p: DVec2) -> bool {
     }
     odd
 }
+
+/// The distance of a point from a segment.
+pub fn to_segment(p: DVec2, a: DVec2, b: DVec2) -> f64 {
+    let along = b - a;
+    let share = ((p - a).dot(along) / along.length_squared().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
+    p.distance(a + along * share)
+}

@@ -66,6 +66,8 @@ pub struct Division<'a> {
     ties: Vec<Tie>,
     /// For a side of a piece along a narrow gap that beyond the gap.
     across_gaps: BTreeMap<Side, Side>,
+    /// Rows of quadrilaterals across each narrow gap.
+    layers: u32,
     /// For each curve, whether it is divided by its turning too, because sizes alone would lose its shape.
     turns: Vec<bool>,
     /// The number of curves with more segments than the sizes ask for, to keep their shape.
@@ -88,7 +90,8 @@ impl<'a> Division<'a> {
     pub fn measure(domain: &'a Domain, metric: &'a dyn MetricSource) -> Result<Self, Fault> {
         let (pieces, ties) = (Vec::with_capacity(domain.curves.len()), Vec::new());
         let turns = vec![false; domain.curves.len()];
-        let mut division = Division { domain, metric, pieces, ties, across_gaps: BTreeMap::new(), turns, shaped: 0 };
+        let mut division =
+            Division { domain, metric, pieces, ties, across_gaps: BTreeMap::new(), layers: 1, turns, shaped: 0 };
         let mut total = 0.0;
         for (id, curve) in domain.curves.iter().enumerate() {
             if curve.first.index() != id {
@@ -241,7 +244,7 @@ impl<'a> Division<'a> {
             if self.ties.is_empty() {
                 break;
             }
-            let loops = self.loops_without_gaps();
+            let loops = self.loops_beside_gaps();
             if self.even_once(&loops).is_err() {
                 let loops = self.whole_loops();
                 if self.even_once(&loops).is_err() {

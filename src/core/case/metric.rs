@@ -62,9 +62,14 @@ fn field(table: &Table<'_>, curves: &[&str]) -> Result<FieldSpec, Fault> {
                 place: table.place(),
             })
         }
+        "gap" => {
+            table.only(&["kind", "layers"])?;
+            let layers = table.need("layers", "3")?.count(1, 100)?;
+            Ok(FieldSpec::Gap { layers, place: table.place() })
+        }
         _ => Err(kind.wrong(
             "a kind of metric",
-            "\"formula\", \"uniform\", \"boundary_layer\", \"distance\" or \"curvature\" after kind =",
+            "\"formula\", \"uniform\", \"boundary_layer\", \"distance\", \"curvature\" or \"gap\" after kind =",
         )),
     }
 }

@@ -317,7 +317,7 @@ fn domain(table: &Table<'_>, folder: &Path) -> Result<DomainSource, Fault> {
 fn check_fields(table: &Table<'_>, domain: &DomainSource, fields: &[FieldSpec]) -> Result<(), Fault> {
     match domain {
         DomainSource::Curves { .. } | DomainSource::Surfaces(_) | DomainSource::Elements { .. }
-            if fields.is_empty() =>
+            if fields.iter().all(|field| matches!(field, FieldSpec::Gap { .. })) =>
         {
             Err(table
                 .fault("The case has no metric")

@@ -120,6 +120,13 @@ pub enum FieldSpec {
         /// Its place in the case, for messages.
         place: String,
     },
+    /// Rows between curves of the plane that face each other: sizes across are at most this part of their distance.
+    Gap {
+        /// Number of rows.
+        layers: u32,
+        /// Its place in the case, for messages.
+        place: String,
+    },
 }
 
 /// A compiled field.
@@ -182,6 +189,11 @@ impl Field {
             FieldSpec::Curvature { chord, least, far, place } => {
                 let field = Curvature::new(*chord, *least, *far);
                 Kind::Curvature(field.map_err(|fault| placed(fault, place))?)
+            }
+            // In the plane the division of the curves finds the gaps.
+            FieldSpec::Gap { place, .. } => {
+                let fault = Fault::new("A metric of kind \"gap\" is for domains of curves in the plane");
+                return Err(placed(fault.remedy("Remove it"), place));
             }
         })
     }
@@ -274,11 +286,11 @@ impl Sizing {
     }
 
     /// The same metric, intersected with sizes that are forced, from which sizes grow by `gradation` over a unit length
-    /// (docs/algorithm.md, "Forced spacing"), and with the widths of narrow gaps.
+    /// (docs/algorithm.md, "Forced spacing"), and with the widths of narrow gaps, for so many layers in them.
     #[must_use]
-    pub(in crate::core) fn forced(&self, sides: &[ForcedSide], gaps: &[Rungs], gradation: f64) -> Sizing {
+    pub(in crate::core) fn forced(&self, sides: &[ForcedSide], gaps: &[Rungs], layers: u32, gradation: f64) -> Sizing {
         let forced = (!sides.is_empty()).then(|| Forced::new(sides, gradation, self.size_scale));
-        let gap = Gap::new(gaps, gradation, self.size_scale);
+        let gap = Gap::new(gaps, layers, gradation, self.size_scale);
         let more = [forced.map(|field| Kind::Forced(Box::new(field))), gap.map(|field| Kind::Gap(Box::new(field)))];
         let fields = self.fields.iter().cloned().chain(more.into_iter().flatten().map(Field)).collect();
         Sizing::new(fields, self.size_scale).on(self.atlas.clone())

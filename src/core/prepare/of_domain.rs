@@ -39,9 +39,11 @@ pub(super) fn from_domain(
     watch.tell(Stage::Divide, 0, 0);
     let atlas = domain.spatial.as_ref().map(|spatial| Arc::clone(&spatial.atlas));
     let compile = |spec| Field::compile(spec, &|name| domain.curve_polyline(name));
+    // On surfaces no gaps are looked for, and the field is refused.
+    let is_of_gaps = |spec: &FieldSpec| domain.spatial.is_none() && matches!(spec, FieldSpec::Gap { .. });
     let mut fields = match own {
         Some(own) => own,
-        None => case.fields.iter().map(compile).collect::<Result<_, _>>()?,
+        None => case.fields.iter().filter(|spec| !is_of_gaps(spec)).map(compile).collect::<Result<_, _>>()?,
     };
     for point in &case.points {
         fields.extend(size_at(point, domain.size)?);
@@ -51,7 +53,7 @@ pub(super) fn from_domain(
     let layered =
         layers::layered_curves(&domain, &case.parameters).map_err(|fault| fault.of_kind(FaultKind::Parameter))?;
     watch.tell(Stage::Triangulate, 0, 0);
-    let first = divided(&domain, &sizing, case.gradation)?;
+    let first = divided(&domain, &sizing, layers_in_gaps(case), case.gradation)?;
     sizing = first.sizing.clone();
     let (spacing, gaps) = (first.spacing.clone(), first.gaps.clone());
     let mut made = adapted_mesh(case, &domain, first, watch)?;
@@ -107,6 +109,12 @@ struct AdaptedMesh {
     lines: Vec<([PointId; 2], u32)>,
     /// The hard points, by number.
     hard: Vec<(u32, PointId)>,
+}
+
+/// The layers that a case asks for in narrow gaps: the most of any field, or one row.
+fn layers_in_gaps(case: &Case) -> u32 {
+    let layers = |spec: &FieldSpec| if let FieldSpec::Gap { layers, .. } = spec { *layers } else { 1 };
+    case.fields.iter().map(layers).max().unwrap_or(1)
 }
 
 /// The limits that a case sets on the chords of curves.

@@ -53,6 +53,8 @@ pub struct NarrowGaps {
     pub pairs: usize,
     /// The least width.
     pub least_width: f64,
+    /// Rows of quadrilaterals that are to lie across each.
+    pub layers: u32,
     /// Whether both sides of each have equal numbers of segments; otherwise no loops or no triangles allow that.
     pub facing: bool,
 }
@@ -61,7 +63,12 @@ impl NarrowGaps {
     fn of(gaps: &Gaps) -> Option<NarrowGaps> {
         let widths = gaps.rungs.iter().flatten().map(|[a, b]| a.distance(*b));
         let least_width = widths.fold(f64::INFINITY, f64::min);
-        (!gaps.strips.is_empty()).then_some(NarrowGaps { pairs: gaps.strips.len(), least_width, facing: true })
+        (!gaps.strips.is_empty()).then_some(NarrowGaps {
+            pairs: gaps.strips.len(),
+            least_width,
+            layers: gaps.layers,
+            facing: true,
+        })
     }
 }
 
@@ -103,7 +110,8 @@ impl Spacing {
         let gaps = |gaps: &NarrowGaps| {
             let (pairs, width) = (counted(gaps.pairs as u64, "narrow gap"), number(gaps.least_width));
             if gaps.facing {
-                format!("nodes face each other across {pairs}, down to {width} wide")
+                let rows = if gaps.layers == 1 { String::new() } else { format!(", for {} layers each", gaps.layers) };
+                format!("nodes face each other across {pairs}, down to {width} wide{rows}")
             } else {
                 format!("{pairs}, down to {width} wide; equal numbers of segments on both sides are not possible")
             }
@@ -123,25 +131,26 @@ pub(super) struct Divided {
     pub gaps: Gaps,
 }
 
-/// Divides and triangulates a domain. Curves that face each other across a narrow gap get nodes that face each other.
+/// Divides and triangulates a domain. Curves that face each other across a gap too narrow for `layers` rows get nodes
+/// that face each other.
 /// Where segments are much shorter than the metric asks for, the metric becomes the intersection with their lengths,
 /// which grow inwards, and the domain is divided anew.
-pub(super) fn divided(domain: &Domain, asked: &Sizing, gradation: Option<f64>) -> Result<Divided, Fault> {
+pub(super) fn divided(domain: &Domain, asked: &Sizing, layers: u32, gradation: Option<f64>) -> Result<Divided, Fault> {
     let beta = gradation.unwrap_or(GRADATION);
     let division = Division::measure(domain, asked)?;
-    let mut gaps = Gaps::find(&division)?;
+    let mut gaps = Gaps::find(&division, layers)?;
     let mut narrow_gaps = NarrowGaps::of(&gaps);
     let mut sizing = asked.clone();
     let (mut divided, mut set) = if gaps.strips.is_empty() {
         divide_by(division)?
     } else {
-        sizing = asked.forced(&gaps.sides(), &gaps.rungs, beta);
+        sizing = asked.forced(&gaps.sides(), &gaps.rungs, layers, beta);
         let made = Division::measure(domain, &sizing).and_then(|division| divide_by(division.across(&gaps)?));
         match made {
             Ok(made) => made,
             // Where facing nodes do not work out, each curve is divided by itself.
             Err(_) => {
-                (gaps, sizing) = (Gaps::default(), asked.clone());
+                (gaps, sizing) = (Gaps { layers, ..Gaps::default() }, asked.clone());
                 divide_by(division)?
             }
         }
@@ -154,7 +163,7 @@ pub(super) fn divided(domain: &Domain, asked: &Sizing, gradation: Option<f64>) -
             break;
         }
         sides.append(&mut divided.forced);
-        sizing = asked.forced(&[gaps.sides(), sides.clone()].concat(), &gaps.rungs, beta);
+        sizing = asked.forced(&[gaps.sides(), sides.clone()].concat(), &gaps.rungs, layers, beta);
         (divided, set) = divide_by(Division::measure(domain, &sizing)?.across(&gaps)?)?;
     }
     divided.shaped = divided.shaped.max(shaped);

@@ -10,9 +10,6 @@ use crate::core::fault::Fault;
 use crate::core::geometry::{CurveId, DomainCurve};
 use crate::core::metric::{ForcedSide, Rungs, measure};
 
-/// A gap is narrow where it is at most this wide in the metric.
-const WIDEST: f64 = 1.0;
-
 /// Curves face each other where their directions differ by at most this sine (30 degrees).
 const MOST_SINE: f64 = 0.5;
 
@@ -83,6 +80,8 @@ pub struct Gaps {
     pub narrowing: Vec<ForcedSide>,
     /// The rungs of each strip.
     pub rungs: Vec<Rungs>,
+    /// Rows of quadrilaterals that are to lie across each.
+    pub layers: u32,
 }
 
 /// What a ray from a place on a piece meets.
@@ -108,20 +107,21 @@ struct End {
 }
 
 impl Gaps {
-    /// The narrow gaps between the curves of a planar domain that have no fixed number of segments. (On surfaces none
-    /// is looked for.)
+    /// The narrow gaps between the curves of a planar domain that have no fixed number of segments: those that are too
+    /// narrow for so many layers of the metric. (On surfaces none is looked for.)
     ///
     /// # Errors
     /// If the metric fails.
-    pub fn find(division: &Division<'_>) -> Result<Gaps, Fault> {
+    pub fn find(division: &Division<'_>, layers: u32) -> Result<Gaps, Fault> {
         let mut found = Vec::new();
         if division.domain.spatial.is_none() {
             for (c, curve) in division.domain.curves.iter().enumerate() {
                 for piece in 0..division.pieces[c].len() {
                     for side in [0, 1] {
                         if curve.segments.is_none() && curve.sides[side].is_some() {
-                            let seen = Seen { division, curve: CurveId(c as u32), piece, is_left: side == 0 };
-                            seen.strips(&mut found)?;
+                            let curve = CurveId(c as u32);
+                            let widest = f64::from(layers);
+                            Seen { division, curve, piece, is_left: side == 0, widest }.strips(&mut found)?;
                         }
                     }
                 }
@@ -130,7 +130,7 @@ impl Gaps {
         // Long strips win where two overlap.
         let length = |strip: &Strip| division.stretch_length(&strip.sides[0]);
         found.sort_by(|a, b| length(b).total_cmp(&length(a)));
-        let mut gaps = Gaps::default();
+        let mut gaps = Gaps { layers, ..Gaps::default() };
         let mut taken: BTreeMap<(CurveId, usize), Vec<Stretch>> = BTreeMap::new();
         for strip in found {
             let known = |side: &Stretch| taken.get(&(side.curve, side.piece)).into_iter().flatten();
@@ -178,8 +178,10 @@ impl Gaps {
                 continue;
             }
             let metric_length = measure::length(&division.metric.metric(rung[0].midpoint(rung[1]))?, rung[1] - rung[0]);
-            if metric_length < SHORT {
-                mouths.push(ForcedSide::standing(rung.map(|p| p.extend(0.0)), metric_length));
+            let layers = f64::from(self.layers);
+            if metric_length < SHORT * layers {
+                let (ends, size) = (rung.map(|p| p.extend(0.0)), rung[0].distance(rung[1]) / layers);
+                mouths.push(ForcedSide { ends, size, metric_size: metric_length / layers });
             }
         }
         Ok(mouths)
@@ -232,6 +234,8 @@ struct Seen<'a> {
     curve: CurveId,
     piece: usize,
     is_left: bool,
+    /// The greatest width of a gap, in the metric.
+    widest: f64,
 }
 
 impl Seen<'_> {
@@ -272,7 +276,7 @@ impl Seen<'_> {
         let across = if self.is_left { direction.perp() } else { -direction.perp() };
         let from = own.curve.point(s);
         let metric = self.division.metric.metric(from)?;
-        let reach = WIDEST / measure::length(&metric, across);
+        let reach = self.widest / measure::length(&metric, across);
         if direction == DVec2::ZERO || !reach.is_finite() {
             return Ok(None);
         }
@@ -292,7 +296,7 @@ impl Seen<'_> {
         let width = from.distance(at);
         let metric_width = measure::length(&metric, at - from);
         let hit = Hit { curve, piece, t, width, metric_width, alike: slope.dot(direction) > 0.0 };
-        Ok((hit.metric_width <= WIDEST && width > 0.0).then_some(hit))
+        Ok((hit.metric_width <= self.widest && width > 0.0).then_some(hit))
     }
 
     /// Whether a piece begins or ends where this one does: between them there is a corner and no gap.

@@ -44,7 +44,7 @@ impl Loops {
         Loops { odd: Vec::new(), of }
     }
 
-    /// Begins a loop; one across so many rungs.
+    /// Begins a loop; one with so many segments on rungs.
     fn begin(&mut self, rungs: usize) {
         self.odd.push(rungs % 2 == 1);
     }
@@ -77,10 +77,10 @@ impl Division<'_> {
         loops
     }
 
-    /// The loops that are left when the narrow gaps are cut off along the rungs at their ends: a row of quadrilaterals
-    /// goes through a gap alone only if these are even.
-    pub(super) fn loops_without_gaps(&self) -> Loops {
-        let mut loops = Loops::none(self);
+    /// The walks, and the loops that are left of them when the narrow gaps are cut off along the rungs at their ends: a
+    /// row of quadrilaterals goes through a gap alone only if these are even too.
+    pub(super) fn loops_beside_gaps(&self) -> Loops {
+        let mut loops = self.whole_loops();
         for face in &self.domain.faces {
             self.add_cut(face, &mut loops);
         }
@@ -112,11 +112,10 @@ impl Division<'_> {
         let number: BTreeMap<Side, usize> = sides.iter().copied().zip(0..).collect();
         let beyond = |side: &Side| self.across_gaps.get(side).and_then(|side| number.get(side)).copied();
         let partner: Vec<Option<usize>> = sides.iter().map(beyond).collect();
-        if partner.iter().all(Option::is_none) {
-            face.walks.iter().for_each(|walk| self.add_walk(walk, loops));
+        let mut is_seen: Vec<bool> = partner.iter().map(Option::is_some).collect();
+        if is_seen.iter().all(|is| !is) {
             return;
         }
-        let mut is_seen: Vec<bool> = partner.iter().map(Option::is_some).collect();
         for from in 0..sides.len() {
             if is_seen[from] {
                 continue;
@@ -127,8 +126,8 @@ impl Division<'_> {
                 passed.push(at);
                 at = next[at];
                 // A rung leads to the end of the piece beyond.
-                while let Some(beyond) = partner[at].filter(|_| rungs <= sides.len()) {
-                    rungs += 1;
+                while let Some(beyond) = partner[at].filter(|_| rungs <= sides.len() * self.layers as usize) {
+                    rungs += self.layers as usize;
                     at = next[beyond];
                 }
             }

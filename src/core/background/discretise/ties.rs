@@ -65,6 +65,7 @@ impl Division<'_> {
             }
             give_least(pieces, least);
         }
+        self.layers = gaps.layers;
         self.tie(gaps);
         self.level_ties();
         Ok(self)
