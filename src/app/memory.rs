@@ -245,7 +245,7 @@ mod tests {
         for beside in [Beside::Nothing, Beside::Data, Beside::States(2)] {
             let need = |size_scale: f64| Need::of(400.0 / (size_scale * size_scale), Some(size_scale));
             let fault = free.allow(&need(0.005), beside).unwrap_err();
-            assert!(fault.what.contains("16 000 000 quadrilaterals".replace(' ', "\u{2009}").as_str()), "{fault}");
+            assert!(fault.what.contains(&format!("{} quadrilaterals", grouped(16_000_000))), "{fault}");
             assert!(fault.what.contains("6.0 GB") && fault.remedy.contains("ulimit -v"), "{fault}");
             let words = fault.remedy.strip_prefix("size_scale = ").unwrap();
             let scale: f64 = words.split_whitespace().next().unwrap().parse().unwrap();
