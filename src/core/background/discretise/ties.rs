@@ -13,6 +13,9 @@ pub(super) struct Tie {
     members: Vec<Member>,
 }
 
+/// A curve and the number of a piece of it.
+type Place = (CurveId, usize);
+
 #[derive(Clone, Debug)]
 struct Member {
     curve: CurveId,
@@ -74,8 +77,9 @@ impl Division<'_> {
     /// Ties the pieces along gaps.
     fn tie(&mut self, gaps: &Gaps) {
         let place = |this: &Self, side: &Stretch| (side.curve, this.piece_at(side.curve, 0.5 * (side.from + side.to)));
-        // The strips at each piece, with the piece beyond.
-        let mut at: BTreeMap<(CurveId, usize), Vec<(usize, bool, (CurveId, usize))>> = BTreeMap::new();
+        // The strips at each piece: the number, whether it is the first side, and the piece beyond.
+        type Strips = Vec<(usize, bool, Place)>;
+        let mut at: BTreeMap<Place, Strips> = BTreeMap::new();
         for (k, strip) in gaps.strips.iter().enumerate() {
             let [a, b] = [0, 1].map(|i| place(self, &strip.sides[i]));
             at.entry(a).or_default().push((k, true, b));
@@ -113,25 +117,23 @@ impl Division<'_> {
         }
     }
 
-    fn piece(&self, (curve, piece): (CurveId, usize)) -> &Piece {
+    fn piece(&self, (curve, piece): Place) -> &Piece {
         &self.pieces[curve.index()][piece]
     }
 
-    fn piece_mut(&mut self, (curve, piece): (CurveId, usize)) -> &mut Piece {
+    fn piece_mut(&mut self, (curve, piece): Place) -> &mut Piece {
         &mut self.pieces[curve.index()][piece]
     }
 
     /// The pieces of a tie.
-    pub(super) fn tied(&self, tie: usize) -> impl Iterator<Item = (CurveId, usize)> {
+    pub(super) fn tied(&self, tie: usize) -> impl Iterator<Item = Place> {
         self.ties[tie].members.iter().map(|member| (member.curve, member.piece))
     }
 
     /// Whether pieces that face each other have different numbers of segments.
     pub fn is_unlevel(&self) -> bool {
-        let count = |place| self.piece(place).segments;
-        let differs =
-            |tie: usize| self.tied(tie).any(|place| Some(place).map(count) != self.tied(tie).next().map(count));
-        (0..self.ties.len()).any(differs)
+        let counts = |tie: usize| self.tied(tie).map(|place| self.piece(place).segments);
+        (0..self.ties.len()).any(|tie| counts(tie).any(|count| counts(tie).next() != Some(count)))
     }
 
     /// Gives all pieces of a tie as many segments as the one with the most; whether any piece has changed.
@@ -167,7 +169,7 @@ impl Division<'_> {
     pub(super) fn best_toggle_of_tie(&self, tie: usize) -> Option<(f64, u32)> {
         let places = || self.tied(tie).map(|place| self.piece(place));
         let n = places().next()?.segments;
-        let least_of = |(curve, piece): (CurveId, usize)| {
+        let least_of = |(curve, piece): Place| {
             let least = if self.domain.is_closed(curve) { 3 } else { 1 };
             self.pieces[curve.index()][piece].least.max(least)
         };
@@ -181,7 +183,7 @@ impl Division<'_> {
     ///
     /// # Errors
     /// If the metric fails.
-    pub(super) fn facing_places(&self) -> Result<BTreeMap<(CurveId, usize), Vec<f64>>, Fault> {
+    pub(super) fn facing_places(&self) -> Result<BTreeMap<Place, Vec<f64>>, Fault> {
         let mut all = BTreeMap::new();
         for tie in &self.ties {
             let mut places: Vec<Vec<f64>> = Vec::new();
