@@ -87,7 +87,8 @@ fn elements_of_a_file_have_the_measures_by_their_names_and_triangles_have_minus_
     export.describe(mesh, &background.sizing, None).unwrap();
     let file = &export.file;
     assert!(file.triangles.len() > 10 && file.quads.len() > 10);
-    let measures: [(&str, fn(&StraightQuad) -> f64); 4] = [
+    type Measure = fn(&StraightQuad) -> f64;
+    let measures: [(&str, Measure); 4] = [
         ("scaled_jacobian", StraightQuad::scaled_jacobian),
         ("aspect_ratio", StraightQuad::aspect_ratio),
         ("skew", StraightQuad::skew),
