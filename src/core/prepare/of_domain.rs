@@ -55,12 +55,15 @@ pub(super) fn from_domain(
     watch.tell(Stage::Triangulate, 0, 0);
     let first = divided(&domain, &sizing, layers_in_gaps(case), case.gradation)?;
     sizing = first.sizing.clone();
-    let (spacing, gaps) = (first.spacing.clone(), first.gaps.clone());
+    let (mut spacing, gaps) = (first.spacing.clone(), first.gaps.clone());
+    let mut shaped = first.divided.shaped;
     let mut made = adapted_mesh(case, &domain, first, watch)?;
     if let Some(beta) = case.gradation {
         sizing = Sizing::new(vec![bounded(&made.mesh, &sizing, beta)?], 1.0).on(atlas);
         watch.tell(Stage::Triangulate, 0, 0);
         let (divided, set) = divide_by(Division::measure(&domain, &sizing)?.across(&gaps)?)?;
+        spacing.follow(&divided);
+        shaped = shaped.max(divided.shaped);
         let again = Divided { divided, set, sizing: sizing.clone(), spacing: spacing.clone(), gaps };
         made = adapted_mesh(case, &domain, again, watch)?;
     }
@@ -77,7 +80,7 @@ pub(super) fn from_domain(
     let mut repairs = Vec::new();
     Repair::RepeatedPoint.report(domain.merged_points, &mut repairs);
     Repair::JoinedEnd.report(domain.joined_ends, &mut repairs);
-    Repair::ShapedCurve.report(made.divided.shaped, &mut repairs);
+    Repair::ShapedCurve.report(shaped, &mut repairs);
     Ok(Background { mesh: made.mesh, sizing, names, adapted: made.adapted, repairs, spacing })
 }
 

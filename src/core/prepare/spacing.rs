@@ -86,6 +86,13 @@ impl Forced {
 }
 
 impl Spacing {
+    /// Whether the nodes of this division face each other across the gaps.
+    pub(super) fn follow(&mut self, divided: &DividedDomain) {
+        if let Some(gaps) = &mut self.narrow_gaps {
+            gaps.facing = divided.is_facing;
+        }
+    }
+
     /// Whether there is nothing to tell.
     pub fn is_plain(&self) -> bool {
         *self == Spacing::default()
@@ -132,14 +139,13 @@ pub(super) struct Divided {
 }
 
 /// Divides and triangulates a domain. Curves that face each other across a gap too narrow for `layers` rows get nodes
-/// that face each other.
-/// Where segments are much shorter than the metric asks for, the metric becomes the intersection with their lengths,
-/// which grow inwards, and the domain is divided anew.
+/// that face each other. Where segments are much shorter than the metric asks for, the metric becomes the intersection
+/// with their lengths, which grow inwards, and the domain is divided anew.
 pub(super) fn divided(domain: &Domain, asked: &Sizing, layers: u32, gradation: Option<f64>) -> Result<Divided, Fault> {
     let beta = gradation.unwrap_or(GRADATION);
     let division = Division::measure(domain, asked)?;
     let mut gaps = Gaps::find(&division, layers)?;
-    let mut narrow_gaps = NarrowGaps::of(&gaps);
+    let narrow_gaps = NarrowGaps::of(&gaps);
     let mut sizing = asked.clone();
     let (mut divided, mut set) = if gaps.strips.is_empty() {
         divide_by(division)?
@@ -167,13 +173,11 @@ pub(super) fn divided(domain: &Domain, asked: &Sizing, layers: u32, gradation: O
         (divided, set) = divide_by(Division::measure(domain, &sizing)?.across(&gaps)?)?;
     }
     divided.shaped = divided.shaped.max(shaped);
-    if let Some(told) = &mut narrow_gaps {
-        told.facing = divided.is_facing;
-    }
     let is_first = |(id, curve): &(usize, &DomainCurve)| curve.first.index() == *id;
     let courses = domain.curves.iter().enumerate().filter(is_first).map(|(_, curve)| &curve.curve);
     let smooth_points = courses.map(Course::smooth_points).sum();
     let forced = (!sides.is_empty()).then(|| Forced::of(&sides, beta, gradation.is_some()));
-    let spacing = Spacing { forced, narrow_gaps, smooth_points };
+    let mut spacing = Spacing { forced, narrow_gaps, smooth_points };
+    spacing.follow(&divided);
     Ok(Divided { divided, set, sizing, spacing, gaps })
 }

@@ -273,7 +273,7 @@ impl Seen<'_> {
         let domain = self.division.domain;
         let own = &domain.curves[self.curve.index()];
         let direction = own.curve.at(s).1.normalize_or_zero();
-        let across = if self.is_left { direction.perp() } else { -direction.perp() };
+        let across = self.off(direction);
         let from = own.curve.point(s);
         let metric = self.division.metric.metric(from)?;
         let reach = self.widest / measure::length(&metric, across);
@@ -362,8 +362,9 @@ impl Seen<'_> {
         Ok(())
     }
 
-    fn point_at(&self, s: f64) -> DVec2 {
-        self.division.point(self.curve, s)
+    /// The direction off the curve on this side.
+    fn off(&self, along: DVec2) -> DVec2 {
+        if self.is_left { along.perp() } else { -along.perp() }
     }
 
     /// The direction across at an end of the piece, near a place on it: at a corner the one of the place, since it is
@@ -371,8 +372,7 @@ impl Seen<'_> {
     fn across(&self, place: f64, limit: f64) -> DVec2 {
         let curve = &self.division.domain.curves[self.curve.index()].curve;
         let [near, end] = [place, limit].map(|s| curve.at(s).1.normalize_or_zero());
-        let direction = if end.distance(near) < SMOOTH { end } else { near };
-        if self.is_left { direction.perp() } else { -direction.perp() }
+        self.off(if end.distance(near) < SMOOTH { end } else { near })
     }
 
     /// The end of a strip near a place that still faces the other side; the next one, if there is one, does not.
@@ -382,7 +382,7 @@ impl Seen<'_> {
             None => {
                 let other = &self.division.domain.curves[hit.curve.index()];
                 end.s = limit;
-                end.t = straightened(other, hit.t, self.point_at(limit), self.across(place, limit));
+                end.t = straightened(other, hit.t, self.division.point(self.curve, limit), self.across(place, limit));
             }
             Some(mut beyond) => {
                 let mut known = hit;
