@@ -187,6 +187,7 @@ const LANES: [(&str, &[&str]); 5] = [
             "last_resort",
             "cleaned",
             "refilled",
+            "row_laid",
             "swept",
         ],
     ),

@@ -63,10 +63,11 @@ fn the_tables_of_a_finished_mesh_have_the_extremes_and_counts_of_its_report() {
         close(mean, report.physical_scaled_jacobian.unwrap().mean, "mean Jacobian in space");
         close(least(&table, |e| e.angles_space[0]), report.physical_angles.min, "angle in space");
         close(-least(&table, |e| -e.angles_space[1]), report.physical_angles.max, "angle in space");
-        // The report integrates the metric along edges; the table has it at both ends.
-        if name == "two-faces" {
-            assert!((least(&table, |e| e.lengths_metric[0]) / report.lengths.min - 1.0).abs() < 0.02);
-            assert!((least(&table, |e| -e.lengths_metric[1]) / -report.lengths.max - 1.0).abs() < 0.02);
+        // The report integrates the metric along edges; the table has it at both ends. Where sizes change slowly both
+        // agree.
+        if name == "example1" {
+            assert!((least(&table, |e| e.lengths_metric[0]) / report.lengths.min - 1.0).abs() < 0.005);
+            assert!((least(&table, |e| -e.lengths_metric[1]) / -report.lengths.max - 1.0).abs() < 0.005);
         }
         let mut nodes = NodeTable::default();
         nodes.follow(mesh, &Changes::Everything, |_| Steps::default());

@@ -54,8 +54,8 @@ pub struct Parameters {
     /// Aim a side edge at the bisector of a frontal angle up to 225 degrees, and at the right angle beyond; off: always
     /// at the right angle (4.3.4, iii).
     pub bisector: bool,
-    /// Place the new top nodes of each quadrilateral (docs/algorithm.md, "Placement of new top nodes"); off: the
-    /// paper's eq. (9) on front nodes.
+    /// Place the new top nodes of each quadrilateral, and the nodes of rows at walls (docs/algorithm.md, "Placement of
+    /// new top nodes", "Rows at walls"); off: the paper's eq. (9) on front nodes.
     pub placement: bool,
     /// Where a side edge is divided.
     pub division_at: DivisionAt,

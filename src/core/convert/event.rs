@@ -350,6 +350,18 @@ pub enum Event {
         /// Energy of the cavity and its neighbourhood, before and after.
         energy: [f64; 2],
     },
+    /// A row at the walls was laid on their normals (docs/algorithm.md, "Rows at walls").
+    RowLaid {
+        /// Its number, from 1 at the wall.
+        row: u32,
+        /// Number of its nodes.
+        nodes: u32,
+        /// Of those, how many stand on the normal at the height asked for.
+        laid: u32,
+        /// Mean angle between its edges across and the normals, before and after.
+        #[serde(serialize_with = "both_degrees")]
+        lean: [f64; 2],
+    },
     /// Free nodes were smoothed by minimising the energy (4.3.7).
     Swept {
         /// Number of nodes examined.

@@ -16,6 +16,7 @@ mod event;
 mod phase;
 mod front;
 mod relax;
+mod wall;
 mod select;
 mod side;
 mod top;

@@ -59,6 +59,8 @@ pub enum FinishPart {
     FirstSmoothing,
     /// Clean-up of the structure.
     CleanUp,
+    /// Laying of the rows at walls (docs/algorithm.md, "Rows at walls").
+    Rows,
     /// Smoothing of the final structure.
     LastSmoothing,
     /// Mending of what folds over its surface, when every face is converted.

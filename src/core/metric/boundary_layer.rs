@@ -222,6 +222,8 @@ impl BoundaryLayer {
             let m = others.intersect_slab(n, h);
             return Some(on.map_or(m, |along| m.intersect_slab(n.cross(along), h)));
         };
+        // Where rows are higher than elements are to be long, these grow with them: far away no element stands on end.
+        let along = if along > self.first { along.max(h) } else { along };
         let h = h.min(LARGEST_ANISOTROPY * along);
         let (across, along) = (1.0 / (h * h), 1.0 / (along * along));
         let m = match (&self.curves, on) {

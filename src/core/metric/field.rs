@@ -14,6 +14,7 @@ use super::forced::{Forced, ForcedSide};
 use super::gap::{Gap, Rungs};
 use super::place::MetricPlace;
 use super::table::Table;
+use super::walls::{Rows, Walls};
 use crate::core::fault::{Fault, FaultKind};
 use crate::core::geometry::assembly::placed;
 use crate::core::geometry::{Atlas, Line};
@@ -50,12 +51,30 @@ pub trait MetricSource {
     /// # Errors
     /// If the field is not positive definite and finite there (boxed to keep the common result small).
     fn metric(&self, uv: DVec2) -> Result<Metric2, Box<BadMetric>>;
+
+    /// The rows that are asked for at a node of a wall; `None` where there is no wall.
+    fn rows_at(&self, _node: DVec2) -> Option<Rows> {
+        None
+    }
+
+    /// Whether rows are asked for anywhere.
+    fn has_walls(&self) -> bool {
+        false
+    }
 }
 
 impl<P: Deref<Target: MetricSource>> MetricSource for P {
     #[inline]
     fn metric(&self, uv: DVec2) -> Result<Metric2, Box<BadMetric>> {
         (**self).metric(uv)
+    }
+
+    fn rows_at(&self, node: DVec2) -> Option<Rows> {
+        (**self).rows_at(node)
+    }
+
+    fn has_walls(&self) -> bool {
+        (**self).has_walls()
     }
 }
 
@@ -263,6 +282,8 @@ pub struct Sizing {
     atlas: Option<Arc<Atlas>>,
     /// Whether a field needs the curvature.
     bends: bool,
+    /// Where boundary layers ask for rows; `None` where there is no wall.
+    walls: Option<Arc<Walls>>,
 }
 
 impl Sizing {
@@ -276,7 +297,7 @@ impl Sizing {
         // Fields that only limit others come last; the sort is stable.
         fields.sort_by_key(|field| !field.is_tensor());
         let bends = fields.iter().any(|field| matches!(field.0, Kind::Curvature(..)));
-        Sizing { fields, size_scale, atlas: None, bends }
+        Sizing { fields, size_scale, atlas: None, bends, walls: None }
     }
 
     /// The same metric on surfaces.
@@ -294,6 +315,12 @@ impl Sizing {
         let more = [forced.map(|field| Kind::Forced(Box::new(field))), gap.map(|field| Kind::Gap(Box::new(field)))];
         let fields = self.fields.iter().cloned().chain(more.into_iter().flatten().map(Field)).collect();
         Sizing::new(fields, self.size_scale).on(self.atlas.clone())
+    }
+
+    /// The same metric with walls.
+    #[must_use]
+    pub fn with_walls(self, walls: Walls) -> Sizing {
+        Sizing { walls: (!walls.is_empty()).then(|| Arc::new(walls)), ..self }
     }
 
     /// The surfaces; `None` in a planar domain.
@@ -366,6 +393,14 @@ impl MetricSource for Sizing {
             None => Ok(self.metric3(&MetricPlace::in_plane(uv))?.plane()),
             Some(atlas) => self.on_surface(atlas, uv),
         }
+    }
+
+    fn rows_at(&self, node: DVec2) -> Option<Rows> {
+        self.walls.as_ref()?.rows_at(node)
+    }
+
+    fn has_walls(&self) -> bool {
+        self.walls.is_some()
     }
 }
 

@@ -11,6 +11,7 @@ mod forced;
 mod gap;
 mod field;
 mod survey;
+mod walls;
 pub(crate) mod gradation;
 
 pub(in crate::core) use curvature::Curvature;
@@ -19,3 +20,4 @@ pub use forced::ForcedSide;
 pub use gap::Rungs;
 pub use place::MetricPlace;
 pub use survey::Survey;
+pub use walls::{Rows, Walls};

@@ -7,6 +7,7 @@ mod of_domain;
 mod of_elements;
 mod of_mesh;
 mod spacing;
+mod walls;
 
 use of_domain::{FileLines, from_domain, shape_limits};
 use of_elements::from_elements;

@@ -7,7 +7,7 @@ use glam::DVec2;
 use super::graded::bounded;
 use super::need::allow_sizes;
 use super::spacing::{Divided, divided};
-use super::{Background, layers};
+use super::{Background, layers, walls};
 use crate::core::background::adapt::adapt;
 use crate::core::background::triangulate::divide_by;
 use crate::core::background::{Adapted, DividedDomain, Division};
@@ -38,6 +38,7 @@ pub(super) fn from_domain(
 ) -> Result<Background, Fault> {
     watch.tell(Stage::Divide, 0, 0);
     let atlas = domain.spatial.as_ref().map(|spatial| Arc::clone(&spatial.atlas));
+    let has_own_fields = own.is_none();
     let compile = |spec| Field::compile(spec, &|name| domain.curve_polyline(name));
     // On surfaces no gaps are looked for, and the field is refused.
     let is_of_gaps = |spec: &FieldSpec| domain.spatial.is_none() && matches!(spec, FieldSpec::Gap { .. });
@@ -66,6 +67,9 @@ pub(super) fn from_domain(
         shaped = shaped.max(divided.shaped);
         let again = Divided { divided, set, sizing: sizing.clone(), spacing: spacing.clone(), gaps };
         made = adapted_mesh(case, &domain, again, watch)?;
+    }
+    if has_own_fields {
+        sizing = sizing.with_walls(walls::of_fields(case, &domain, &made.divided));
     }
     if let Some(curves) = layered {
         layers::offset_only(&mut made.mesh, &made.divided, &curves, case.parameters.layers);

@@ -164,6 +164,7 @@ pub(super) fn changes_front(event: &Event) -> bool {
             | Event::Matched { .. }
             | Event::Cleaned { .. }
             | Event::Refilled { .. }
+            | Event::RowLaid { .. }
             | Event::Swept { .. }
             | Event::Unfolded { .. }
             | Event::FaceConverted { .. }

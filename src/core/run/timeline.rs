@@ -75,6 +75,7 @@ pub const LANES: [Lane; 5] = [
             EventKind::LastResort,
             EventKind::Cleaned,
             EventKind::Refilled,
+            EventKind::RowLaid,
             EventKind::Swept,
         ],
         is_failure: false,

@@ -279,6 +279,7 @@ impl<'a> Converter<'a> {
         PostProcessing {
             face: self.face(),
             by: self.parameters.clean_up,
+            lays_rows: self.parameters.placement,
             keeps_history: self.keeps_history(),
             keeps_journal: self.keeps_journal(),
             mesh: &mut self.mesh,

@@ -82,6 +82,7 @@ kinds! {
         LastResort "last_resort",
         Cleaned "cleaned",
         Refilled "refilled",
+        RowLaid "row_laid",
         Swept "swept",
         Unfolded "unfolded",
         FaceConverted "face_converted",

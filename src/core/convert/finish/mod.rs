@@ -1,10 +1,11 @@
-//! Global post-processing (paper 4.3.7): smoothing by the energy, clean-up of the structure, smoothing again, all by
-//! worklists; once every face is converted, what folds over its surface is repaired. A step is one sweep of the
-//! smoothing or one change of the structure.
+//! Global post-processing (paper 4.3.7): smoothing by the energy, clean-up of the structure, laying of the rows at
+//! walls, smoothing again; once every face is converted, what folds over its surface is repaired. A step is one sweep
+//! of the smoothing, one change of the structure or one row.
 
 pub(super) mod parts;
 mod worklist;
 pub mod clean_up;
+mod rows;
 pub mod unfold;
 
 pub use self::parts::Finished;
@@ -13,6 +14,7 @@ use std::sync::Arc;
 
 use self::clean_up::CleanUp;
 use self::parts::Finishing;
+use self::rows::RowLaying;
 use self::unfold::{Unfolded, Unfolding};
 use self::worklist::Worklist;
 use super::event::{Event, Mending};
@@ -20,7 +22,7 @@ use super::front::Done;
 use super::phase::{FinishPart, Phase};
 use super::relax::energy;
 use crate::core::case::CleanUpBy;
-use crate::core::mesh::Mesh;
+use crate::core::mesh::{Mesh, NodeId};
 use crate::core::metric::MetricSource;
 
 /// A node that moved farther than this (in its metric) sends its neighbours to be looked at again.
@@ -40,6 +42,8 @@ pub(super) struct PostProcessing<'f, 'a> {
     pub finished: &'f mut Finished,
     /// How the structure is cleaned up.
     pub by: CleanUpBy,
+    /// Whether rows at walls are laid.
+    pub lays_rows: bool,
     /// Whether the parts write down what they need to be taken back.
     pub keeps_history: bool,
     /// Whether the journal stays; else it is forgotten on the way.
@@ -52,6 +56,7 @@ impl PostProcessing<'_, '_> {
         let event = match part {
             FinishPart::FirstSmoothing | FinishPart::LastSmoothing => self.sweep(part),
             FinishPart::CleanUp => self.clean_up(),
+            FinishPart::Rows => self.lay_row(),
             FinishPart::Unfolding => self.unfold(),
         };
         if event.is_some() {
@@ -59,7 +64,8 @@ impl PostProcessing<'_, '_> {
         }
         let next = match part {
             FinishPart::FirstSmoothing => FinishPart::CleanUp,
-            FinishPart::CleanUp => FinishPart::LastSmoothing,
+            FinishPart::CleanUp if self.lays_rows => FinishPart::Rows,
+            FinishPart::CleanUp | FinishPart::Rows => FinishPart::LastSmoothing,
             FinishPart::LastSmoothing if self.face.is_some() => return (Phase::NextFace, Some(Event::PostProcessed)),
             FinishPart::LastSmoothing | FinishPart::Unfolding => return (Phase::Done, Some(Event::PostProcessed)),
         };
@@ -74,6 +80,20 @@ impl PostProcessing<'_, '_> {
         let event = part.step(mesh, self.keeps_journal);
         self.finished.cleaned_up = part.done;
         event
+    }
+
+    /// Lays the next row at the walls.
+    fn lay_row(&mut self) -> Option<Event> {
+        let (mesh, source) = (&mut *self.mesh, &**self.source);
+        let part = self.parts.rows.get_or_insert_with(|| RowLaying::begin(mesh, source, self.face));
+        let event = part.step(mesh, source)?;
+        if let Event::RowLaid { laid, .. } = event {
+            self.finished.laid += laid as usize;
+        }
+        if !self.keeps_journal {
+            mesh.commit();
+        }
+        Some(event)
     }
 
     /// Repairs the next quadrilateral that folds over its surface.
@@ -94,14 +114,13 @@ impl PostProcessing<'_, '_> {
     }
 
     /// Looks at every free node that waits: all in the first sweep of a part, then those around nodes that moved. None
-    /// where no node waits any more.
+    /// where no node waits any more. Nodes of rows that are laid stay.
     fn sweep(&mut self, part: FinishPart) -> Option<Event> {
         let mesh = &mut *self.mesh;
-        let list = match part {
-            FinishPart::FirstSmoothing => &mut self.parts.first_smoothing,
-            _ => &mut self.parts.last_smoothing,
-        };
-        let list = list.get_or_insert_with(|| every_free_node(mesh, self.face, self.keeps_history));
+        let Finishing { first_smoothing, last_smoothing, rows, .. } = &mut *self.parts;
+        let list = if part == FinishPart::FirstSmoothing { first_smoothing } else { last_smoothing };
+        let stays = |mesh: &Mesh, n: NodeId| mesh.is_fixed(n) || rows.as_ref().is_some_and(|rows| rows.stays(mesh, n));
+        let list = list.get_or_insert_with(|| every_free_node(mesh, self.face, &stays, self.keeps_history));
         let (mut looked, mut moved) = (0, 0);
         for _ in 0..list.len() {
             let Some(node) = list.take() else { break };
@@ -110,7 +129,7 @@ impl PostProcessing<'_, '_> {
             moved += u32::from(distance > 0.0);
             if distance > STIRRED {
                 for n in mesh.neighbours(node).chain([node]) {
-                    if !mesh.is_fixed(n) {
+                    if !stays(mesh, n) {
                         list.add(n);
                     }
                 }
@@ -124,8 +143,9 @@ impl PostProcessing<'_, '_> {
     }
 }
 
-fn every_free_node(mesh: &Mesh, face: Option<u32>, recording: bool) -> Worklist {
-    let free = || mesh.nodes_of(face).filter(|&n| !mesh.is_fixed(n));
+/// Waiting: every node that does not stay.
+fn every_free_node(mesh: &Mesh, face: Option<u32>, stays: &dyn Fn(&Mesh, NodeId) -> bool, recording: bool) -> Worklist {
+    let free = || mesh.nodes_of(face).filter(|&n| !stays(mesh, n));
     let mut list = Worklist::new(MOST_LOOKS * free().count(), recording);
     free().for_each(|node| list.add(node));
     list

@@ -1,6 +1,7 @@
 //! What the global post-processing (paper 4.3.7) has under way and has done.
 
 use super::clean_up::{CleanUp, CleanUpMark, CleanedUp};
+use super::rows::RowLaying;
 use super::unfold::{Unfolded, Unfolding};
 use super::worklist::{ListMark, Worklist};
 use crate::core::convert::sums::summed;
@@ -10,6 +11,8 @@ summed! {
 pub struct Finished {
     /// Changes of structure.
     pub cleaned_up: CleanedUp,
+    /// Nodes laid on the normals of walls.
+    pub laid: usize,
     /// Nodes moved by smoothing.
     pub moves: usize,
     /// Repairs of what folded over its surface.
@@ -22,6 +25,7 @@ pub struct Finished {
 pub struct Finishing<'a> {
     pub(super) first_smoothing: Option<Worklist>,
     pub(super) clean_up: Option<CleanUp<'a>>,
+    pub(super) rows: Option<RowLaying>,
     pub(super) last_smoothing: Option<Worklist>,
     pub(super) unfolding: Option<Unfolding<'a>>,
 }
@@ -31,6 +35,7 @@ pub struct Finishing<'a> {
 pub struct PartMarks {
     first_smoothing: Option<ListMark>,
     clean_up: Option<CleanUpMark>,
+    rows: Option<u32>,
     last_smoothing: Option<ListMark>,
     unfolding: Option<ListMark>,
 }
@@ -46,6 +51,7 @@ impl Finishing<'_> {
     pub fn bytes(&self) -> usize {
         self.lists().map(Worklist::bytes).sum::<usize>()
             + self.clean_up.as_ref().map_or(0, CleanUp::bytes)
+            + self.rows.as_ref().map_or(0, RowLaying::bytes)
             + self.unfolding.as_ref().map_or(0, Unfolding::bytes_of_rest)
     }
 
@@ -67,6 +73,7 @@ impl Finishing<'_> {
         PartMarks {
             first_smoothing: self.first_smoothing.as_ref().map(Worklist::mark),
             clean_up: self.clean_up.as_ref().map(CleanUp::mark),
+            rows: self.rows.as_ref().map(RowLaying::mark),
             last_smoothing: self.last_smoothing.as_ref().map(Worklist::mark),
             unfolding: self.unfolding.as_ref().map(|part| part.list.mark()),
         }
@@ -76,6 +83,7 @@ impl Finishing<'_> {
     pub fn take_back(&mut self, marks: PartMarks, cleaned_up: CleanedUp) {
         take_back(&mut self.first_smoothing, marks.first_smoothing, Worklist::take_back);
         take_back(&mut self.clean_up, marks.clean_up, |part, mark| part.take_back(mark, cleaned_up));
+        take_back(&mut self.rows, marks.rows, RowLaying::take_back);
         take_back(&mut self.last_smoothing, marks.last_smoothing, Worklist::take_back);
         take_back(&mut self.unfolding, marks.unfolding, |part, mark| part.list.take_back(mark));
     }
@@ -84,6 +92,7 @@ impl Finishing<'_> {
     pub fn write_state(&self, bytes: &mut Vec<u8>) {
         self.lists().for_each(|list| list.write_state(bytes));
         self.clean_up.iter().for_each(|part| part.write_state(bytes));
+        self.rows.iter().for_each(|part| part.write_state(bytes));
     }
 }
 

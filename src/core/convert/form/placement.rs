@@ -6,6 +6,7 @@ use crate::core::case::Parameters;
 use crate::core::convert::front::Front;
 use crate::core::convert::phase::Base;
 use crate::core::convert::side::choice::BaseSide;
+use crate::core::convert::wall::{Onward, onward};
 use crate::core::front::Side;
 use crate::core::mesh::quality::length_over;
 use crate::core::mesh::{ElementId, Mesh, NodeId};
@@ -30,12 +31,20 @@ pub struct Aim {
     pub along_base: DVec2,
     /// The share of the parallelogram's corner.
     pub share: f64,
+    /// Where the top follows on a stem of a wall (docs/algorithm.md, "Rows at walls"), its row, from 1: it is to go to
+    /// the unit place, which is then that of the row, and has no share of the parallelogram's corner.
+    pub row: Option<u32>,
 }
 
 impl Aim {
     /// The aim of the top of a side; `None` where the field gives no metric on the way.
     pub fn of(mesh: &Mesh, source: &dyn MetricSource, parameters: &Parameters, base: &Base, side: Side) -> Option<Aim> {
-        let target = BaseSide { mesh, parameters, base, side }.target_angle();
+        let here = BaseSide { mesh, parameters, base, side };
+        if let Some(Onward { place, row }) = onward(mesh, source, base.node(side), base.level) {
+            let target = here.angle(place);
+            return Some(Aim { unit: place, target, along_base: DVec2::ZERO, share: 0.0, row: Some(row) });
+        }
+        let target = here.target_angle();
         let unit = unit_place(mesh, source, base, side, target)?;
         // The top is to have unit length, not the base's: rows that run into larger or smaller sizes would never change
         // the number of their columns, and drift away from the metric. The side leans for it, and the next one more,
@@ -43,7 +52,7 @@ impl Aim {
         let widen = (1.0 / base.length).clamp(0.5, 2.0);
         let along_base = (mesh.uv(base.node(side)) - mesh.uv(base.node(side.other()))) * widen;
         let share = (0.5 + 0.5 * (base.length - 1.0).abs() / OFF).min(1.0);
-        Some(Aim { unit, target, along_base, share })
+        Some(Aim { unit, target, along_base, share, row: None })
     }
 
     /// The place, once the other top is at its own.

@@ -117,7 +117,7 @@ impl Candidates {
     }
 
     /// The bounds of the limit (`side_deviation`) within which the same side is chosen, all else unchanged: at least
-    /// the first, and below the second; `None` where there is no such bound.
+    /// the first, and below the second; `None` where there is no such bound, or none of at most 90 degrees.
     pub fn margin_of_limit(&self) -> [Option<f64>; 2] {
         let least = |among: &dyn Fn(&Candidate) -> bool| {
             let deviations =
@@ -132,7 +132,10 @@ impl Candidates {
                 [own.filter(|own| swap.is_some_and(|swap| swap < *own)), None]
             }
             // With a larger one the nearest edge is near enough.
-            SideRule::Swap => [None, least(&|c| c.swap.is_none() && c.passed == Some(Passed::Farther))],
+            SideRule::Swap => {
+                let nearest = least(&|c| c.swap.is_none() && c.passed == Some(Passed::Farther));
+                [None, nearest.filter(|nearest| *nearest <= FRAC_PI_2)]
+            }
             _ => [None; 2],
         }
     }

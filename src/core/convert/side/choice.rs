@@ -2,6 +2,8 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
+use glam::DVec2;
+
 use crate::core::case::Parameters;
 use crate::core::convert::event::{SideEdge, Why};
 use crate::core::convert::phase::{Attempt, Base};
@@ -111,7 +113,7 @@ impl BaseSide<'_> {
 
     /// The edge, or the line, from the base node to a node as a side.
     pub fn edge(&self, node: NodeId) -> SideEdge {
-        let angle = self.angle(node);
+        let angle = self.angle(self.mesh.uv(node));
         SideEdge { side: self.side, node, angle, deviation: (angle - self.target_angle()).abs() }
     }
 
@@ -122,12 +124,12 @@ impl BaseSide<'_> {
         if self.parameters.bisector && theta <= WIDEST_BISECTED { 0.5 * theta } else { FRAC_PI_2 }
     }
 
-    /// Angle between the base and the line to a node, in the metric of the side's base node, into the live region.
-    fn angle(&self, to: NodeId) -> f64 {
+    /// Angle between the base and the line to a place, in the metric of the side's base node, into the live region.
+    pub fn angle(&self, to: DVec2) -> f64 {
         let BaseSide { mesh, base, side, .. } = *self;
         let at = base.node(side);
         let p = mesh.uv(at);
-        let (along, up) = (mesh.uv(base.node(side.other())) - p, mesh.uv(to) - p);
+        let (along, up) = (mesh.uv(base.node(side.other())) - p, to - p);
         match side {
             Side::Left => angle(mesh.metric_ref(at), along, up),
             Side::Right => angle(mesh.metric_ref(at), up, along),

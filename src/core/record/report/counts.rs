@@ -53,6 +53,7 @@ pub(super) fn events(converted: &Converted) -> BTreeMap<String, u64> {
         ("last_resort_merge", resort.merged),
         ("last_resort_recut", resort.recut),
         ("last_resort_template_quad", resort.template_quads),
+        ("rows_laid_node", finished.laid),
         ("smoothing_move", finished.moves),
         ("unfolding_collapsed", finished.unfolded.collapsed),
         ("unfolding_moved", finished.unfolded.moved),

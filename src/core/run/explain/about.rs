@@ -78,6 +78,11 @@ pub fn about(event: &Event, before: &LookedAt, after: &Converter<'_>) -> Vec<Str
         Event::LastResort(outcome) => vec![last_resort(outcome, &before.parameters)],
         Event::Cleaned { what, energy } => cleaned(*what, *energy, &before.parameters),
         Event::Refilled { irregular, energy, .. } => refilled(*irregular, *energy),
+        Event::RowLaid { .. } => one(
+            "In a stretched metric an edge across the wall may lean far at next to no cost. So the rows of a boundary \
+             layer are laid from the wall outwards: each node goes along the normal of the wall to the height asked \
+             for, as far as every element around stays convex and good enough.",
+        ),
         Event::Swept { .. } => swept(before.part),
         Event::Unfolded { sine, .. } => unfolded(*sine),
         Event::FaceConverted { .. } => one("Nothing of this face is left to convert; the next one is taken."),

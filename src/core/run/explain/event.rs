@@ -139,6 +139,9 @@ pub fn event(event: &Event) -> String {
             format!("element {} folded over the surface: {how}", element.0)
         }
         Event::FaceConverted { region } => format!("face {} is converted", region + 1),
+        Event::RowLaid { row, nodes, laid, .. } => {
+            format!("row {row} from the walls: {laid} of {} laid on the normals", count(nodes as usize, "node"))
+        }
         Event::Swept { looked, moved } => {
             format!("{moved} of {} moved to lower the energy", count(looked as usize, "node"))
         }

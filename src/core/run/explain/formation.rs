@@ -101,6 +101,16 @@ impl Placed<'_> {
             way if way > 0.0625 => "an eighth of the way, since what is around does not allow more",
             _ => "not at all, since what is around does not allow it",
         };
+        if let Some(row) = aim.row {
+            return format!(
+                "The {} aims at {}: on the normal of the wall, at the height of row {row} from there. It went there \
+                 from {} {way}. {}",
+                self.name(),
+                self.at(there),
+                self.at(self.here),
+                self.measures()
+            );
+        }
         let percent = fixed(100.0 * aim.share, 1);
         let length = fixed(self.base.length, 3);
         format!(

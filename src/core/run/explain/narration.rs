@@ -92,6 +92,14 @@ pub fn narration(event: &Event, base: Option<[NodeId; 2]>) -> String {
         Event::Matched { .. } | Event::Patched { .. } | Event::LastResort(_) => last_resort(event),
         Event::Cleaned { what, energy } => cleaned(what, energy),
         Event::Refilled { .. } => refilled(event),
+        Event::RowLaid { row, nodes, laid, lean } => format!(
+            "of {} in row {row} from the walls, {} on the normal of the wall at the height that the boundary layer asks \
+             for; the edges to them leaned {}\u{b0} from the normals on average, and lean {}\u{b0} now",
+            count(nodes as usize, "node"),
+            if laid == 1 { "1 stands".to_owned() } else { format!("{} stand", grouped(laid.into())) },
+            degrees(lean[0]),
+            degrees(lean[1])
+        ),
         Event::Swept { looked, moved } => format!(
             "of {} that may move, {} to places where the mesh has a lower energy",
             count(looked as usize, "node"),

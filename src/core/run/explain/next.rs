@@ -158,6 +158,7 @@ fn finish(part: FinishPart, clean_up: CleanUpBy) -> &'static str {
             "The structure is cleaned up around irregular nodes: by changes of one or two elements, then by filling \
              cavities anew (4.3.7)."
         }
+        (FinishPart::Rows, _) => "The rows at walls are laid on the normals of the walls, one after the other.",
         (FinishPart::LastSmoothing, _) => "The final structure is smoothed (4.3.7).",
         (FinishPart::Unfolding, _) => "Elements that fold over their surface are repaired.",
     }
