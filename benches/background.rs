@@ -4,7 +4,8 @@
 #![allow(clippy::unwrap_used)]
 
 use quadfront::core::case::{Case, built_in};
-use quadfront::core::prepare::{Background, background};
+use quadfront::core::convert::background;
+use quadfront::core::prepare::Background;
 use quadfront::core::progress::Nobody;
 use quadfront::core::record::{Export, Statistics};
 

@@ -6,7 +6,8 @@
 
 use quadfront::core::case::built_in;
 use quadfront::core::convert::Converter;
-use quadfront::core::prepare::{Background, background};
+use quadfront::core::convert::background;
+use quadfront::core::prepare::Background;
 use quadfront::core::progress::{Nobody, Stage, Watch};
 
 mod meter;

@@ -109,7 +109,7 @@ pub use glam;
 
 pub use crate::core::case::{Case, DomainSource, MeshSource, MeshUse, Parameters, Taking, built_in};
 pub use crate::core::convert::conversion::convert;
-pub use crate::core::convert::{Converted, Converter, Counts, Event, EventKind, Phase};
+pub use crate::core::convert::{Converted, Converter, Counts, Event, EventKind, Phase, background};
 pub use crate::core::fault::{Fault, FaultKind};
 pub use crate::core::formats::format::{
     read_bytes as read_mesh_bytes, read_mesh, write_mesh, write_to as write_mesh_to,
@@ -118,7 +118,7 @@ pub use crate::core::formats::{Format, WriteOptions};
 pub use crate::core::kernel::{Metric2, Metric3};
 pub use crate::core::mesh::{ElementId, HalfEdgeId, Mesh, Named, Names, NodeId};
 pub use crate::core::metric::{FieldSpec, MetricSource, Sizing};
-pub use crate::core::prepare::{Background, background};
+pub use crate::core::prepare::Background;
 pub use crate::core::progress::{Cancel, Nobody, Stage, Watch};
 pub use crate::core::record::run_file::{read as read_run, write as write_run};
 pub use crate::core::record::{Export, Report, Statistics};

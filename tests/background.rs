@@ -5,7 +5,7 @@
 use std::path::Path;
 
 use quadfront::core::case::{Case, built_in};
-use quadfront::core::prepare::background;
+use quadfront::core::convert::background;
 use quadfront::core::progress::Nobody;
 use quadfront::core::record::{Export, Statistics};
 

@@ -5,11 +5,11 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use quadfront::core::case::{Case, built_in};
+use quadfront::core::convert::background;
 use quadfront::core::convert::conversion::convert;
 use quadfront::core::convert::{Converter, Event};
 use quadfront::core::mesh::{ElementId, Mesh, NodeId};
 use quadfront::core::metric::measure::angle;
-use quadfront::core::prepare::background;
 use quadfront::core::progress::Nobody;
 use quadfront::core::record::Export;
 use quadfront::core::run::explain;

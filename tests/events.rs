@@ -5,9 +5,9 @@
 use std::collections::BTreeMap;
 
 use quadfront::core::case::{Parameters, built_in};
+use quadfront::core::convert::background;
 use quadfront::core::convert::walk::walk;
 use quadfront::core::convert::{Candidate, Converter, Event, Phase, Purpose, StepReport, Why};
-use quadfront::core::prepare::background;
 use quadfront::core::progress::Nobody;
 
 /// Calls `look` with a converter of a built-in case.

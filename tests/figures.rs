@@ -4,10 +4,10 @@
 
 use glam::DVec2;
 use quadfront::core::case::built_in;
+use quadfront::core::convert::background;
 use quadfront::core::convert::{Converter, Event, Phase, Purpose};
 use quadfront::core::front::Segment;
 use quadfront::core::mesh::{HalfEdgeId, Mesh, NodeId, Refusal};
-use quadfront::core::prepare::background;
 use quadfront::core::progress::Nobody;
 
 fn mesh_of(name: &str) -> Mesh {

@@ -6,10 +6,11 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use glam::DVec3;
 use quadfront::core::case::built_in;
+use quadfront::core::convert::background;
 use quadfront::core::convert::{Converter, Event, Phase};
 use quadfront::core::formats::{Format, WriteOptions, format};
 use quadfront::core::mesh::{Mesh, NodeId};
-use quadfront::core::prepare::{Background, background};
+use quadfront::core::prepare::Background;
 use quadfront::core::progress::Nobody;
 use quadfront::core::record::Export;
 use quadfront::core::soup::{Data, MeshFile};

@@ -4,11 +4,11 @@
 
 use glam::DVec2;
 use quadfront::core::case::built_in;
+use quadfront::core::convert::background;
 use quadfront::core::convert::conversion::convert;
 use quadfront::core::convert::{Converter, Event, Phase};
 use quadfront::core::fault::Fault;
 use quadfront::core::front::segment::front_level;
-use quadfront::core::prepare::background;
 use quadfront::core::progress::Nobody;
 use quadfront::core::record::Export;
 use quadfront::core::soup::Allow;

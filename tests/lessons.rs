@@ -9,10 +9,10 @@
 use std::path::Path;
 
 use proptest::prelude::*;
+use quadfront::core::convert::background;
 use quadfront::core::convert::{Converter, Event};
 use quadfront::core::lesson::{Block, Lesson, MOST_WORDS, built_in, decisions, page};
 use quadfront::core::mesh::NodeId;
-use quadfront::core::prepare::background;
 use quadfront::core::progress::Nobody;
 use quadfront::core::question::{Answer, Asked, Choice, Kind, Verdict};
 use quadfront::core::run::explain::plain;

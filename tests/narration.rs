@@ -9,10 +9,10 @@ use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
 use quadfront::core::case::built_in;
+use quadfront::core::convert::background;
 use quadfront::core::convert::walk::walk;
 use quadfront::core::convert::{Converter, Event, EventKind, Mending, StepReport};
 use quadfront::core::mesh::{ElementId, NodeId};
-use quadfront::core::prepare::background;
 use quadfront::core::progress::Nobody;
 use quadfront::core::run::explain::{narration, plain};
 use quadfront::core::run::{History, Run};
@@ -97,7 +97,8 @@ fn every_kind_of_event_has_a_sentence_and_its_numbers_are_those_of_the_event() {
     let how = Mending::Rotated { new: [NodeId(7), NodeId(9)] };
     let unfolded = Event::Unfolded { element: ElementId(4), how, sine: [-0.1, 0.2] };
     let lost = Event::PickLost { a: NodeId(3), b: NodeId(5) };
-    [lost, unfolded, Event::Finished].iter().for_each(|event| look(event, None));
+    let mirrored = Event::Mirrored { quads: 1212, nodes: 1180, on_line: 31 };
+    [lost, unfolded, mirrored, Event::Finished].iter().for_each(|event| look(event, None));
     let missing: Vec<&EventKind> = EventKind::ALL.iter().filter(|kind| !first.contains_key(kind)).collect();
     assert!(missing.is_empty(), "no case has {missing:?}");
     let mut text = String::new();

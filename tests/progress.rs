@@ -6,13 +6,13 @@ mod grid;
 
 use grid::grid;
 use quadfront::core::case::{Case, DomainSource, built_in};
+use quadfront::core::convert::background;
 use quadfront::core::convert::conversion;
 use quadfront::core::discrete::Edges;
 use quadfront::core::discrete::features::{ANGLE, features};
 use quadfront::core::discrete::repair::repair;
 use quadfront::core::formats::format::{read_mesh, read_mesh_watched, write_to};
 use quadfront::core::formats::{Format, WriteOptions};
-use quadfront::core::prepare::background;
 use quadfront::core::progress::{Cancel, Nobody, Stage, Watch};
 use quadfront::core::soup::MeshFile;
 

@@ -10,11 +10,11 @@ use std::fs;
 use std::path::PathBuf;
 
 use quadfront::core::case::built_in;
+use quadfront::core::convert::background;
 use quadfront::core::convert::{Converter, Phase};
 use quadfront::core::formats::format::write_to;
 use quadfront::core::formats::{Format, WriteOptions};
 use quadfront::core::kernel::Fingerprint;
-use quadfront::core::prepare::background;
 use quadfront::core::progress::Nobody;
 use quadfront::core::record::Export;
 use rayon::prelude::*;

@@ -8,10 +8,10 @@ use std::f64::consts::TAU;
 
 use glam::DVec2;
 use quadfront::core::case::{Parameters, built_in};
+use quadfront::core::convert::background;
 use quadfront::core::convert::walk::walk;
 use quadfront::core::convert::{Converter, Event, Narrow, NotSlender, Phase, SeamCorner, StepReport, Unmerged};
 use quadfront::core::mesh::{ElementId, Mesh, NodeId};
-use quadfront::core::prepare::background;
 use quadfront::core::progress::Nobody;
 
 type Segment = [NodeId; 2];

@@ -6,8 +6,8 @@ use std::path::Path;
 
 use glam::{DVec2, Vec3Swizzles};
 use quadfront::core::case::{Case, built_in};
+use quadfront::core::convert::background;
 use quadfront::core::convert::conversion::{Converted, convert};
-use quadfront::core::prepare::background;
 use quadfront::core::progress::Nobody;
 use quadfront::core::record::{Export, Report};
 

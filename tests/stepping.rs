@@ -3,8 +3,8 @@
 #![allow(clippy::unwrap_used)]
 
 use quadfront::core::case::built_in;
+use quadfront::core::convert::background;
 use quadfront::core::convert::{Converter, Event, Phase};
-use quadfront::core::prepare::background;
 use quadfront::core::progress::Nobody;
 
 /// Calls `look` with a converter of a built-in case at a coarse size.

@@ -5,8 +5,8 @@
 use glam::{DVec2, DVec3};
 use quadfront::core::case::built_in;
 use quadfront::core::convert::Converter;
+use quadfront::core::convert::background;
 use quadfront::core::mesh::Names;
-use quadfront::core::prepare::background;
 use quadfront::core::progress::Nobody;
 use quadfront::core::record::Export;
 use quadfront::core::soup::MeshFile;

@@ -6,12 +6,12 @@ use serde::Serialize;
 
 use crate::core::case::{Case, DomainSource, MeshUse, Parameters};
 use crate::core::convert::walk::walk_editing;
-use crate::core::convert::{Candidates, Converter, Event, Phase, StepReport, Stop, Tell, conversion};
+use crate::core::convert::{self, Candidates, Converter, Event, Phase, StepReport, Stop, Tell, conversion};
 use crate::core::fault::Fault;
 use crate::core::kernel::number::grouped;
 use crate::core::mesh::{Mesh, Names, Touched};
 use crate::core::metric::Sizing;
-use crate::core::prepare::{self, Background, Spacing};
+use crate::core::prepare::{Background, Spacing};
 use crate::core::progress::{Stage, Watch};
 use crate::core::record::{Export, Measured, Report, Statistics};
 use crate::core::run::explain::{Narrator, beginning, plain};
@@ -58,7 +58,7 @@ pub(super) struct Quads {
 
 /// Makes the background mesh of a case, with data for viewing where `shows_data`.
 pub(super) fn background(case: &Case, shows_data: bool, watch: &mut dyn Watch) -> Result<Triangles, Fault> {
-    let Background { mesh, sizing, names, repairs, spacing, .. } = prepare::background(case, watch)?;
+    let Background { mesh, sizing, names, repairs, spacing, .. } = convert::background(case, watch)?;
     watch.tell(Stage::Check, 0, 0);
     let seen =
         Seen { mesh: &mesh, parameters: &case.parameters, phase: &Phase::Select, changed: &[], candidates: None };

@@ -5,8 +5,8 @@ use std::sync::mpsc;
 use std::time::Duration;
 
 use quadfront::core::case::Case;
+use quadfront::core::convert::background;
 use quadfront::core::convert::conversion::convert;
-use quadfront::core::prepare::background;
 use quadfront::core::progress::Nobody;
 
 use super::promise::keep;

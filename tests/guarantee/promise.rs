@@ -4,12 +4,12 @@ use std::collections::BTreeMap;
 
 use glam::{DVec2, DVec3};
 use quadfront::core::case::Case;
+use quadfront::core::convert::background;
 use quadfront::core::convert::conversion::convert_by;
 use quadfront::core::convert::{Converter, Phase};
 use quadfront::core::fault::Fault;
 use quadfront::core::kernel::predicates::convex;
 use quadfront::core::mesh::{Mesh, NodeId};
-use quadfront::core::prepare::background;
 use quadfront::core::progress::Nobody;
 use quadfront::core::soup::soundness::examine;
 use quadfront::core::soup::{Defect, MeshFile};

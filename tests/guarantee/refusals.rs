@@ -2,9 +2,9 @@
 
 use quadfront::core::case::Case;
 use quadfront::core::case::built_in::{CASES, named};
+use quadfront::core::convert::background;
 use quadfront::core::convert::{Converter, Phase};
 use quadfront::core::mesh::Refusals;
-use quadfront::core::prepare::background;
 use quadfront::core::progress::Nobody;
 
 use super::promise::keep_by;

@@ -12,12 +12,12 @@ use std::path::Path;
 
 use glam::DVec3;
 use quadfront::core::case::{Case, built_in};
+use quadfront::core::convert::background;
 use quadfront::core::convert::conversion::convert;
 use quadfront::core::convert::{Converted, Converter, Event, Phase};
 use quadfront::core::front::Segment;
 use quadfront::core::metric::MetricSource;
 use quadfront::core::metric::measure::triangle_area;
-use quadfront::core::prepare::background;
 use quadfront::core::progress::Nobody;
 use quadfront::core::record::{Export, Statistics};
 use quadfront::core::soup::soundness::examine;

@@ -2,7 +2,7 @@
 
 use proptest::prelude::*;
 use proptest::test_runner::TestRunner;
-use quadfront::core::prepare::background;
+use quadfront::core::convert::background;
 use quadfront::core::progress::Nobody;
 
 use super::{make, parsed};

@@ -172,7 +172,7 @@ impl Followed {
         let places = nodes.map(|node| self.at(mesh, node)).map(|p| [p, p]);
         let around = places.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])]);
         match converter.phase() {
-            Phase::PostProcess { .. } | Phase::Done => self.now = None,
+            Phase::PostProcess { .. } | Phase::Mirror | Phase::Done => self.now = None,
             _ => self.now = around.or(self.now),
         }
     }

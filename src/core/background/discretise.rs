@@ -14,7 +14,7 @@ pub use gaps::Gaps;
 use loops::{Side, walks};
 use ties::Tie;
 
-use super::length::{Along, Piece, give, measure, share_out};
+use super::length::{Along, Piece, give, give_least, give_or_take, measure, share_out};
 use crate::core::fault::Fault;
 use crate::core::geometry::assembly::{loop_name, placed};
 use crate::core::geometry::curve::distance_to_segment;
@@ -107,10 +107,11 @@ impl<'a> Division<'a> {
             match curve.segments {
                 None => {
                     pieces.iter_mut().for_each(|piece| piece.divide(&along));
-                    give_least(&mut pieces, if domain.is_closed(curve.first) { 3 } else { 1 });
+                    give_least(&mut pieces, domain.least_segments(curve.first));
                     if let Some(turning) = &curve.turning {
                         division.shape(curve, turning, &mut pieces)?;
                     }
+                    give_or_take(&mut pieces, domain.more_segments(curve.first));
                 }
                 Some(n) => {
                     if (n as usize) < pieces.len() {
@@ -165,7 +166,7 @@ impl<'a> Division<'a> {
 
     /// The least number of segments of a curve.
     fn least(&self, curve: &DomainCurve) -> u32 {
-        let closed = if self.domain.is_closed(curve.first) { 3 } else { 1 };
+        let closed = self.domain.least_segments(curve.first);
         curve.turning.as_ref().map_or(closed, |turning| turning.least.max(closed))
     }
 
@@ -487,12 +488,6 @@ fn bearable(curve: &DomainCurve, length: f64, total: f64) -> Result<(), Fault> {
     }
     let fault = Fault::new(format!("The curve \"{}\" would get {length:.3e} segments", curve.name));
     Err(placed(fault.remedy("Increase the sizes along it, or give fewer segments"), &curve.place))
-}
-
-/// Gives pieces so many segments that they have at least this number together.
-fn give_least(pieces: &mut [Piece], least: u32) {
-    let few: u32 = pieces.iter().map(|piece| piece.segments).sum();
-    give(pieces, least.saturating_sub(few));
 }
 
 #[cfg(test)]

@@ -225,6 +225,20 @@ pub fn give(pieces: &mut [Piece], more: u32) {
     }
 }
 
+/// Gives pieces so many segments that they have at least this number together.
+pub fn give_least(pieces: &mut [Piece], least: u32) {
+    let few: u32 = pieces.iter().map(|piece| piece.segments).sum();
+    give(pieces, least.saturating_sub(few));
+}
+
+/// Gives pieces so many segments more, or fewer, but at least one each.
+pub fn give_or_take(pieces: &mut [Piece], more: i32) {
+    if more != 0 {
+        let number: u32 = pieces.iter().map(|piece| piece.segments).sum();
+        share_out(pieces, number.saturating_add_signed(more).max(pieces.len() as u32));
+    }
+}
+
 /// Distributes `n` segments, at least one per piece, among the pieces in proportion to their lengths.
 pub fn share_out(pieces: &mut [Piece], n: u32) {
     let total: f64 = pieces.iter().map(Piece::length).sum();

@@ -4,6 +4,7 @@
 
 mod parameters;
 mod rules;
+mod symmetry;
 pub(in crate::core) mod table;
 mod geometry;
 mod surfaces;
@@ -24,6 +25,7 @@ pub use parameters::{ParameterKind, Parameters};
 pub use rules::{
     CleanUpBy, DivisionAt, EnhancementOrder, FirstRescue, HMinOver, Selection, SelectionWindow, SmoothingWeights,
 };
+pub use symmetry::Symmetry;
 use table::{Source, Table};
 pub use taking::{MeshSource, MeshUse, Taking};
 
@@ -94,6 +96,8 @@ pub struct Case {
     pub chord: f64,
     /// The least number of segments of a smooth closed curve.
     pub least_segments: u32,
+    /// Whether the domain is its own mirror image, so that the mesh is to be too (docs/algorithm.md, "Symmetry").
+    pub symmetry: Option<Symmetry>,
     /// Whether a boundary with a fixed odd number of segments may get one more; otherwise it is rejected.
     pub split_odd: bool,
     /// The groups of its mesh that are ignored.
@@ -156,6 +160,7 @@ impl Case {
             "tolerance",
             "chord",
             "least_segments",
+            "symmetry",
             "split_odd",
             "ignore_groups",
             "surface",
@@ -195,6 +200,7 @@ impl Case {
             tolerance: table.get("tolerance").map(|value| value.positive()).transpose()?,
             chord: chord(&table)?,
             least_segments: least_segments(&table)?,
+            symmetry: symmetry::symmetry(&table)?,
             split_odd: table.get("split_odd").map_or(Ok(false), |v| v.flag())?,
             ignore_groups: table.get("ignore_groups").map_or(Ok(Ignored::Nothing), |v| taking::ignored(&v))?,
             domain,
@@ -241,6 +247,7 @@ impl Case {
             tolerance: None,
             chord: ShapeLimits::CHORD,
             least_segments: ShapeLimits::LEAST_SEGMENTS,
+            symmetry: None,
             split_odd: false,
             ignore_groups: Ignored::Nothing,
             text: String::new(),

@@ -129,6 +129,8 @@ fn refusals_say_what_where_and_what_to_do() {
         ("version = 1", "version = 2"),
         ("title", "titel"),
         ("gradation = 1.3", "gradation = 1"),
+        ("gradation = 1.3", "symmetry = \"z\""),
+        ("gradation = 1.3", "symmetry = true"),
         ("size_scale", "size_skale"),
         ("layers = 2", "layers = 2.5"),
         ("selection = \"shortest\"", "selection = \"longest\""),
@@ -280,7 +282,7 @@ fn an_invalid_background_in_a_case_is_refused() {
         ("triangles = [[0, 1, 2], [0, 1, 3]]", "overlap"),
     ] {
         let case = Case::parse(&with_background(elements), "a", "a.toml", Path::new("")).unwrap();
-        let fault = crate::core::prepare::background(&case, &mut crate::core::progress::Nobody).unwrap_err();
+        let fault = crate::core::convert::background(&case, &mut crate::core::progress::Nobody).unwrap_err();
         assert!(fault.to_string().contains(said), "{fault}");
     }
 }

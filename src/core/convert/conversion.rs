@@ -3,12 +3,13 @@
 use super::converter::{Converter, Counts};
 use super::finish::Finished;
 use super::last_resort::Outcome;
+use super::mirror_line::background;
 use crate::core::background::Adapted;
 use crate::core::case::Case;
 use crate::core::fault::Fault;
 use crate::core::mesh::{Mesh, Names};
 use crate::core::metric::Sizing;
-use crate::core::prepare::{Background, Spacing, background};
+use crate::core::prepare::{Background, Spacing};
 use crate::core::progress::Watch;
 
 /// The quadrilaterals of a case.
@@ -54,7 +55,7 @@ pub fn convert_by(
     watch: &mut dyn Watch,
     drive: &mut dyn FnMut(&mut Converter<'_>, &mut dyn Watch) -> Result<(), Fault>,
 ) -> Result<Converted, Fault> {
-    let Background { mesh, sizing, names, adapted, repairs, spacing } = background(case, watch)?;
+    let Background { mesh, sizing, names, adapted, repairs, spacing, .. } = background(case, watch)?;
     let triangles = mesh.element_count();
     let (mesh, counts, last_resort, finished) = {
         let mut converter = Converter::new(mesh, &sizing, case.parameters.clone());

@@ -386,6 +386,15 @@ pub enum Event {
     },
     /// The whole mesh, or the current face, is cleaned up and smoothed (4.3.7).
     PostProcessed,
+    /// The mirror image of the half that was converted was added and joined to it (docs/algorithm.md, "Symmetry").
+    Mirrored {
+        /// Number of quadrilaterals added.
+        quads: usize,
+        /// Number of nodes added.
+        nodes: usize,
+        /// Number of nodes on the mirror line, which are their own images or have them at the same place.
+        on_line: usize,
+    },
     /// The conversion is finished.
     Finished,
 }

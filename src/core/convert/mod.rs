@@ -28,6 +28,7 @@ mod close;
 mod last_resort;
 mod finish;
 mod converter;
+mod mirror_line;
 pub mod walk;
 pub mod conversion;
 
@@ -43,6 +44,7 @@ pub use form::{Aim, Stays};
 pub use front::Gates;
 pub use last_resort::component::Component;
 pub use last_resort::{Means, Outcome, Plan, Stuck};
+pub use mirror_line::background;
 pub use phase::{Attempt, Base, FinishPart, Phase};
 pub(in crate::core) use seam::{AROUND, MOST_UNLIKE, SHORT};
 pub(in crate::core) use split::LEAST_PART;

@@ -184,6 +184,8 @@ pub enum Phase {
     },
     /// The face at hand is converted; the next one follows.
     NextFace,
+    /// The half of a symmetric domain is converted; its mirror image is to be added.
+    Mirror,
     /// Nothing is left to do.
     Done,
 }

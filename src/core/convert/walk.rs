@@ -151,7 +151,8 @@ pub fn walk_editing(
             tell(&StepReport { step, nq, event: &event, candidates, crossings, loops, narrow, quality });
         }
         edit(converter, &event)?;
-        if shown + 1024 <= nq && !matches!(converter.phase(), Phase::PostProcess { .. } | Phase::NextFace | Phase::Done)
+        if shown + 1024 <= nq
+            && !matches!(converter.phase(), Phase::PostProcess { .. } | Phase::NextFace | Phase::Mirror | Phase::Done)
         {
             shown = nq;
             watch.cancel().check()?;

@@ -41,6 +41,14 @@ impl Course {
         Course { path: Path::Image(image), closed, corners, breaks }
     }
 
+    /// The part of a plane curve between two parameters; see [`Curve::part`]. `None` for an image.
+    pub(super) fn part(&self, from: f64, to: f64, ends: [DVec2; 2]) -> Option<Course> {
+        match &self.path {
+            Path::Plane(curve) => Some(Course::of_curve(curve.part(from, to, ends))),
+            Path::Image(_) => None,
+        }
+    }
+
     /// The point at `t` in [0, 1].
     pub fn point(&self, t: f64) -> DVec2 {
         match &self.path {

@@ -4,6 +4,7 @@
 use glam::DVec2;
 
 use super::nurbs::{NurbsCurve, Vector};
+use super::nurbs_part::NurbsPart;
 use super::spec::CurveShape;
 use crate::core::fault::Fault;
 use crate::core::kernel::box_tree::extent;
@@ -26,7 +27,7 @@ enum Path {
     Segment { from: DVec2, to: DVec2 },
     Arc { centre: DVec2, radius: f64, from_angle: f64, turn: f64 },
     Polyline { points: Vec<DVec2>, corners: Vec<u32> },
-    Nurbs(NurbsCurve),
+    Nurbs(NurbsPart),
 }
 
 impl Curve {
@@ -84,13 +85,42 @@ impl Curve {
                 if points.windows(2).all(|w| w[0] == w[1]) {
                     return Err(Fault::new("It has zero length: all its control points are the same"));
                 }
-                Path::Nurbs(NurbsCurve::new(*degree, knots.clone(), weights, points)?)
+                let whole = NurbsCurve::new(*degree, knots.clone(), weights, points)?;
+                Path::Nurbs(NurbsPart::all_of(whole))
             }
         };
         let mut curve = Curve { path, closed, corners: Vec::new() };
         curve.closed |= curve.point(0.0) == curve.point(1.0);
         curve.corners = curve.find_corners();
         Ok(curve)
+    }
+
+    /// The part of it between two parameters, with its ends at `ends`, which lie on the curve but for rounding. A `to`
+    /// above 1 stands for a part that goes on through the start of a closed curve.
+    pub(super) fn part(&self, from: f64, to: f64, ends: [DVec2; 2]) -> Curve {
+        let path = match &self.path {
+            Path::Segment { .. } => Path::Segment { from: ends[0], to: ends[1] },
+            Path::Arc { centre, radius, from_angle, turn } => Path::Arc {
+                centre: *centre,
+                radius: *radius,
+                from_angle: from_angle + from * turn,
+                turn: (to - from) * turn,
+            },
+            Path::Polyline { points, corners } => {
+                let n = points.len() - 1;
+                let place = |k: usize| if k < n { k as f64 / n as f64 } else { 1.0 + (k - n) as f64 / n as f64 };
+                let inner: Vec<usize> = (1..2 * n).filter(|&k| from < place(k) && place(k) < to).collect();
+                // The start of a closed polyline stays a node.
+                let is_corner = |k: usize| k % n == 0 || corners.contains(&((k % n) as u32));
+                let corners = (1..).zip(&inner).filter(|(_, k)| is_corner(**k)).map(|(i, _)| i).collect();
+                let inner = inner.into_iter().map(|k| points[k % n]);
+                Path::Polyline { points: [ends[0]].into_iter().chain(inner).chain([ends[1]]).collect(), corners }
+            }
+            Path::Nurbs(nurbs) => Path::Nurbs(nurbs.part(from, to)),
+        };
+        let mut part = Curve { path, closed: false, corners: Vec::new() };
+        part.corners = part.find_corners();
+        part
     }
 
     /// Point and derivative by `t`, in [0, 1]; at a corner, the derivative after it.
@@ -108,7 +138,7 @@ impl Curve {
                 let (i, s) = piece(n, t);
                 (lerp(points[i], points[i + 1], s), n as f64 * (points[i + 1] - points[i]))
             }
-            Path::Nurbs(nurbs) => nurbs.at_unit(t),
+            Path::Nurbs(nurbs) => nurbs.at(t),
         }
     }
 
@@ -127,7 +157,7 @@ impl Curve {
         match &self.path {
             Path::Segment { .. } | Path::Polyline { .. } => true,
             Path::Arc { .. } => false,
-            Path::Nurbs(nurbs) => nurbs.basis().degree() == 1,
+            Path::Nurbs(nurbs) => nurbs.degree() == 1,
         }
     }
 
@@ -155,7 +185,7 @@ impl Curve {
         match &self.path {
             Path::Segment { .. } | Path::Arc { .. } => vec![0.0, 1.0],
             Path::Polyline { points, .. } => with_ends(inner_parameters(points).into_iter()),
-            Path::Nurbs(nurbs) => with_ends(nurbs.basis().unit_knots()),
+            Path::Nurbs(nurbs) => with_ends(nurbs.knots()),
         }
     }
 
@@ -173,9 +203,7 @@ impl Curve {
                 let n = (turn.abs() / step).ceil().max(1.0);
                 (0..=n as usize).map(|i| i as f64 / n).map(|t| (t, self.point(t))).collect()
             }
-            Path::Nurbs(nurbs) => {
-                chords(&|t| self.point(t), &self.breaks(), nurbs.basis().degree(), self.hull(), tolerance)
-            }
+            Path::Nurbs(nurbs) => chords(&|t| self.point(t), &self.breaks(), nurbs.degree(), self.hull(), tolerance),
         }
     }
 
@@ -193,11 +221,14 @@ impl Curve {
         match &self.path {
             Path::Segment { .. } | Path::Arc { .. } => Vec::new(),
             Path::Polyline { points, corners } => parameters_of(corners, points.len()),
-            Path::Nurbs(nurbs) => nurbs.sharp_knots(|before, after| {
-                before.perp_dot(after).abs() > 1e-6 * before.length() * after.length() || before.dot(after) < 0.0
-            }),
+            Path::Nurbs(nurbs) => nurbs.sharp_knots(is_sharp),
         }
     }
+}
+
+/// Whether the direction jumps between two derivatives.
+fn is_sharp(before: DVec2, after: DVec2) -> bool {
+    before.perp_dot(after).abs() > 1e-6 * before.length() * after.length() || before.dot(after) < 0.0
 }
 
 /// Points of a curve with their parameters, from 0 to 1, so dense that the distance of the chords from the curve is at

@@ -1,6 +1,11 @@
 //! Planar domains: faces bounded by outer loops and holes of named curves, with crack lines and repeated lines; faces
 //! may share curves.
 
+mod half;
+mod symmetry;
+
+pub use half::Half;
+
 use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
@@ -13,6 +18,7 @@ use super::domain_curve::{CurveId, CurveKind, DirectedCurve, DomainCurve};
 use super::domain_point::DomainPoint;
 use super::inside::{self, Chord};
 use super::loops;
+use super::mirror::Mirror;
 use super::space_curve::SpaceCurve;
 use super::spec::{CurveSpec, FaceSpec};
 use crate::core::fault::Fault;
@@ -84,6 +90,10 @@ pub struct Domain {
     pub merged_points: usize,
     /// The number of ends of curves that the given tolerance has moved to a vertex.
     pub joined_ends: usize,
+    /// The line at which it was cut, if it is one half of a symmetric domain.
+    mirror: Option<Mirror>,
+    /// Curves that get so many segments more than their sizes ask for, or fewer.
+    more_segments: Vec<(CurveId, i32)>,
     lower: DVec2,
     upper: DVec2,
     chords: RTree<Chord>,
@@ -190,6 +200,8 @@ impl Domain {
             points: Vec::new(),
             size,
             spatial: None,
+            mirror: None,
+            more_segments: Vec::new(),
             merged_points: 0,
             joined_ends: 0,
             lower,
@@ -383,6 +395,23 @@ impl Domain {
             Some(spatial) => spatial.vertex_of[ends[0] as usize] == spatial.vertex_of[ends[1] as usize],
             None => ends[0] == ends[1],
         }
+    }
+
+    /// The smallest number of segments of a curve: with fewer, a closed curve, or with its mirror image a bent one that
+    /// ends on the mirror line twice, would enclose nothing.
+    pub fn least_segments(&self, id: CurveId) -> u32 {
+        let curve = &self.curves[id.index()];
+        let on_line = |p: DVec2| self.mirror.is_some_and(|mirror| mirror.holds(p));
+        match self.is_closed(id) {
+            true => 3,
+            false if on_line(curve.first()) && on_line(curve.last()) && !curve.curve.straight() => 2,
+            false => 1,
+        }
+    }
+
+    /// How many segments more than its sizes ask for a curve gets; negative where it gets fewer.
+    pub fn more_segments(&self, id: CurveId) -> i32 {
+        self.more_segments.iter().filter(|more| more.0 == id).map(|more| more.1).sum()
     }
 
     /// All images of the space curve whose first image is `first`, including that one.

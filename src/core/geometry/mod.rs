@@ -2,8 +2,10 @@
 //! it.
 
 mod frame;
+mod mirror;
 mod spec;
 mod nurbs;
+mod nurbs_part;
 pub mod curve;
 mod surface;
 mod primitive;
@@ -33,13 +35,14 @@ pub mod complex;
 pub use atlas::Atlas;
 pub use chart::{Chart, ChartPoint};
 pub use course::Course;
-pub use domain::{Domain, DomainFace, Line, Spatial};
+pub use domain::{Domain, DomainFace, Half, Line, Spatial};
 pub use domain_curve::{CurveId, CurveKind, DirectedCurve, DomainCurve};
 pub use domain_point::{DomainPoint, PointOn};
 pub use face_surface::FaceSurface;
 pub use facets::Facets;
 pub use frame::AxisFrame;
 pub use image::{Deviation, Image};
+pub use mirror::{Axis, Joint, Mirror};
 pub(in crate::core) use named_curve::NamedCurve;
 pub use nurbs::{Basis, NurbsCurve, Vector};
 pub use space_curve::SpaceCurve;

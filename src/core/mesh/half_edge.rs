@@ -13,6 +13,7 @@ mod difference;
 mod faces;
 mod fixed;
 mod embedding;
+mod image;
 mod setters;
 mod slots;
 mod permission;
@@ -22,6 +23,7 @@ pub mod touched;
 pub use difference::{Difference, FreeLists};
 pub use embedding::Embedding;
 pub use faces::FaceMesh;
+pub use image::Symmetry;
 pub use taking_back::Undone;
 
 use std::sync::Arc;
@@ -64,6 +66,8 @@ pub struct Mesh {
     pub(super) refusals: Option<Refusals>,
     /// The surfaces on which it lies; `None` in the plane.
     embedding: Option<Arc<Embedding>>,
+    /// What joins its mirror image to it, if it is one half of a symmetric domain.
+    symmetry: Option<Arc<Symmetry>>,
 }
 
 /// Where a node is, and its metric there: side by side, since one is seldom read without the other.

@@ -29,6 +29,8 @@ pub enum Entry {
     Metric(NodeId, Metric2),
     /// The half-edge at which the fan of a node starts.
     Anchor(NodeId, u32),
+    /// The output point of a node.
+    Point(NodeId, u32),
     /// A node was appended.
     NodeAppended,
     /// An element was appended.

@@ -15,7 +15,7 @@ pub mod quality;
 pub mod sines;
 
 pub use half_edge::touched::Touched;
-pub use half_edge::{Difference, Embedding, FreeLists, Mesh, NewElement, Undone};
+pub use half_edge::{Difference, Embedding, FreeLists, Mesh, NewElement, Symmetry, Undone};
 pub use ids::{ElementId, HalfEdgeId, NodeId, PointId};
 pub use journal::Mark;
 pub use names::{Further, GroupsByPlace, Named, Names};

@@ -17,7 +17,7 @@ use super::table::Table;
 use super::walls::{Rows, Walls};
 use crate::core::fault::{Fault, FaultKind};
 use crate::core::geometry::assembly::placed;
-use crate::core::geometry::{Atlas, Line};
+use crate::core::geometry::{Atlas, Line, Mirror};
 use crate::core::kernel::tensor::{LARGEST_ANISOTROPY, check_sizes};
 use crate::core::kernel::{Metric2, Metric3};
 use by_formula::FormulaField;
@@ -284,6 +284,8 @@ pub struct Sizing {
     bends: bool,
     /// Where boundary layers ask for rows; `None` where there is no wall.
     walls: Option<Arc<Walls>>,
+    /// The mirror line of a symmetric domain: beyond it the metric is the image of the one on this side.
+    mirror: Option<Mirror>,
 }
 
 impl Sizing {
@@ -297,7 +299,7 @@ impl Sizing {
         // Fields that only limit others come last; the sort is stable.
         fields.sort_by_key(|field| !field.is_tensor());
         let bends = fields.iter().any(|field| matches!(field.0, Kind::Curvature(..)));
-        Sizing { fields, size_scale, atlas: None, bends, walls: None }
+        Sizing { fields, size_scale, atlas: None, bends, walls: None, mirror: None }
     }
 
     /// The same metric on surfaces.
@@ -314,7 +316,19 @@ impl Sizing {
         let gap = Gap::new(gaps, layers, gradation, self.size_scale);
         let more = [forced.map(|field| Kind::Forced(Box::new(field))), gap.map(|field| Kind::Gap(Box::new(field)))];
         let fields = self.fields.iter().cloned().chain(more.into_iter().flatten().map(Field)).collect();
-        Sizing::new(fields, self.size_scale).on(self.atlas.clone())
+        Sizing::new(fields, self.size_scale).on(self.atlas.clone()).mirrored(self.mirror)
+    }
+
+    /// The same metric on the side of a mirror line that is kept, and its image beyond (docs/algorithm.md, "Symmetry").
+    #[must_use]
+    pub fn mirrored(self, mirror: Option<Mirror>) -> Sizing {
+        Sizing { mirror, ..self }
+    }
+
+    /// The mirror line and the image of a point beyond it, where the metric is to be looked up.
+    #[inline]
+    fn folded(&self, p: DVec2) -> Option<(&Mirror, DVec2)> {
+        self.mirror.as_ref().filter(|mirror| mirror.offset(p) < 0.0).map(|mirror| (mirror, mirror.image(p)))
     }
 
     /// The same metric with walls.
@@ -351,7 +365,10 @@ impl Sizing {
     /// As [`Sizing::metric3`].
     pub fn metric3_at(&self, chart: DVec2) -> Result<Metric3, Box<BadMetric>> {
         match &self.atlas {
-            None => self.metric3(&MetricPlace::in_plane(chart)),
+            None => match self.folded(chart) {
+                None => self.metric3(&MetricPlace::in_plane(chart)),
+                Some((mirror, p)) => Ok(mirror.image_of_metric3(&self.metric3(&MetricPlace::in_plane(p))?)),
+            },
             Some(atlas) => {
                 let at = atlas.at(chart);
                 self.metric3(&self.place(atlas, chart, at.xyz, at.uv))
@@ -390,7 +407,10 @@ impl MetricSource for Sizing {
     #[inline]
     fn metric(&self, uv: DVec2) -> Result<Metric2, Box<BadMetric>> {
         match &self.atlas {
-            None => Ok(self.metric3(&MetricPlace::in_plane(uv))?.plane()),
+            None => match self.folded(uv) {
+                None => Ok(self.metric3(&MetricPlace::in_plane(uv))?.plane()),
+                Some((mirror, p)) => Ok(mirror.image_of_metric(&self.metric3(&MetricPlace::in_plane(p))?.plane())),
+            },
             Some(atlas) => self.on_surface(atlas, uv),
         }
     }

@@ -7,7 +7,7 @@ use rustc_hash::FxHashSet;
 use crate::core::background::DividedDomain;
 use crate::core::case::Parameters;
 use crate::core::fault::Fault;
-use crate::core::geometry::Domain;
+use crate::core::geometry::{Domain, Joint};
 use crate::core::kernel::spelling::nearest;
 use crate::core::mesh::{HalfEdgeId, Mesh};
 
@@ -34,6 +34,22 @@ pub(super) fn layered_curves(domain: &Domain, parameters: &Parameters) -> Result
     Ok((parameters.layers > 0 && !curves.is_empty()).then_some(curves))
 }
 
+/// No rows are offset from the mirror line of a half: in the whole mesh it is no boundary.
+pub(super) fn not_along_the_line(mesh: &mut Mesh, layers: u32) {
+    if layers == 0 || mesh.symmetry().is_none() {
+        return;
+    }
+    let glued: Vec<HalfEdgeId> = mesh.front().filter(|&h| is_glued(mesh, h)).collect();
+    for h in glued {
+        mesh.set_first_level(mesh.origin(h), u16::try_from(layers).unwrap_or(u16::MAX));
+    }
+}
+
+/// Whether a side lies on the mirror line of a half and is to be an inner edge of the whole.
+fn is_glued(mesh: &Mesh, h: HalfEdgeId) -> bool {
+    mesh.symmetry().is_some_and(|symmetry| symmetry.joint(mesh, h) == Some(Joint::Glued))
+}
+
 /// Restricts offsetting to the loops along the curves.
 pub(super) fn offset_only(mesh: &mut Mesh, divided: &DividedDomain, curves: &[usize], layers: u32) {
     // Boundary nodes have not moved, so their positions identify them; adding zero turns -0 into 0.
@@ -53,7 +69,12 @@ pub(super) fn offset_only(mesh: &mut Mesh, divided: &DividedDomain, curves: &[us
         if !follows || layered[mesh.origin(start).index()] {
             continue;
         }
-        mesh.front_loop(start).for_each(|h| layered[mesh.origin(h).index()] = true);
+        // The mirror line of a half joins what are separate loops of the whole.
+        let all: Vec<HalfEdgeId> = mesh.front_loop(start).collect();
+        let first = all.iter().position(|&h| is_glued(mesh, h)).unwrap_or(0);
+        let all = [&all[first..], &all[..first]].concat();
+        let own = all.split(|&h| is_glued(mesh, h)).find(|part| part.contains(&start));
+        own.unwrap_or_default().iter().for_each(|&h| layered[mesh.origin(h).index()] = true);
     }
     for h in segments {
         let node = mesh.origin(h);

@@ -7,12 +7,13 @@ mod of_domain;
 mod of_elements;
 mod of_mesh;
 mod spacing;
+mod symmetric;
 mod walls;
 
 use of_domain::{FileLines, from_domain, shape_limits};
 use of_elements::from_elements;
 use of_mesh::from_mesh;
-pub use spacing::{Forced, NarrowGaps, Spacing};
+pub use spacing::{Forced, MirrorLine, NarrowGaps, Spacing};
 
 use crate::core::background::Adapted;
 use crate::core::case::{Case, DomainSource};
@@ -40,22 +41,38 @@ pub struct Background {
     pub repairs: Vec<String>,
     /// What the boundary makes of the sizes that are asked for.
     pub spacing: Spacing,
+    /// The numbers of segments of the curves that close the half of a symmetric domain along its mirror line.
+    pub mirror_line: Vec<u32>,
 }
 
-/// Makes the background mesh of a case.
+impl Background {
+    /// A mesh whose triangles are given.
+    fn given(mesh: Mesh, sizing: Sizing, names: Names) -> Background {
+        let (adapted, spacing) = (Adapted::default(), Spacing::default());
+        Background { mesh, sizing, names, adapted, repairs: Vec::new(), spacing, mirror_line: Vec::new() }
+    }
+}
+
+/// Makes the background mesh of a case. In a symmetric domain the curves of [`Background::mirror_line`] get so many
+/// segments `more` than their sizes ask for, in their order; negative: fewer.
 ///
 /// # Errors
 /// Faults of the case's geometry, metric or mesh.
-pub fn background(case: &Case, watch: &mut dyn Watch) -> Result<Background, Fault> {
+pub fn background_with(case: &Case, more: &[i32], watch: &mut dyn Watch) -> Result<Background, Fault> {
     let has_curves = matches!(case.domain, DomainSource::Curves { .. } | DomainSource::Surfaces(_));
     if !has_curves && !case.parameters.layered_loops.is_empty() {
         return Err(Fault::new("layered_loops names curves, but the case has none")
             .of_kind(FaultKind::Parameter)
             .remedy("Remove it: layers then applies to every loop"));
     }
+    if case.symmetry.is_some() && !matches!(case.domain, DomainSource::Curves { .. }) {
+        return Err(Fault::new("symmetry is only for planar domains of curves")
+            .of_kind(FaultKind::Parameter)
+            .remedy("Remove symmetry, or give the domain as [[curve]] and [[face]] in the plane"));
+    }
     let whole = |mut domain: Domain| {
         domain.limit_chords(&shape_limits(case), &|_| true);
-        from_domain(case, domain, None, FileLines::default(), watch)
+        from_domain(case, domain, None, FileLines::default(), more, watch)
     };
     let (made, kind) = match &case.domain {
         DomainSource::Curves { curves, faces } => {
@@ -94,6 +111,11 @@ fn chosen_faces(made: Background, names: &[String]) -> Result<Background, Fault>
                     .unwrap_or_else(|| format!("The faces are {}", known.join(", "))),
             ));
         }
+    }
+    if let Some(symmetry) = made.mesh.symmetry() {
+        // One of a face and its image is in the half.
+        let images: Vec<u32> = regions.iter().map(|&region| symmetry.image_of(region)).collect();
+        regions.extend(images);
     }
     let mesh = made.mesh.of_faces(&regions);
     Ok(Background { mesh, ..made })
@@ -159,7 +181,7 @@ mod tests {
     #[test]
     fn bounded_sizes_are_the_same_on_both_sides_of_a_curve_between_faces() {
         let case = Case::parse(TWO_SQUARES, "two", "two.toml", Path::new("")).unwrap();
-        let made = background(&case, &mut Nobody).unwrap();
+        let made = background_with(&case, &[], &mut Nobody).unwrap();
         let size = |x: f64, y: f64| made.sizing.metric(DVec2::new(x, y)).unwrap().min_size();
         for k in 1..40 {
             let y = f64::from(k) / 40.0;

@@ -19,9 +19,9 @@ const HALVED: [usize; 2] = [40, 10_000];
 /// Triangles of a unit mesh for each quadrilateral that comes of them.
 const TRIANGLES_PER_QUAD: f64 = 2.4;
 
-/// Whether the sizes that a metric asks for on the triangles of the boundary are within `max_quads` and what the watch
-/// allows, before any memory is spent on them. The estimate is rough, so that only what is beyond doubt is refused for
-/// `max_quads`. The adaptation itself holds the bound.
+/// Whether the sizes that a metric asks for on the triangles of the boundary, of which the mesh has so many copies, are
+/// within `max_quads` and what the watch allows, before any memory is spent on them. The estimate is rough, so that only
+/// what is beyond doubt is refused for `max_quads`. The adaptation itself holds the bound.
 ///
 /// # Errors
 /// They ask for more, or the watch's own fault.
@@ -29,9 +29,10 @@ pub(super) fn allow_sizes(
     set: &TriangleSet,
     sizing: &Sizing,
     parameters: &Parameters,
+    copies: u32,
     watch: &mut dyn Watch,
 ) -> Result<(), Fault> {
-    let (quads, max_quads) = (metric_area(set, sizing), parameters.max_quads);
+    let (quads, max_quads) = (f64::from(copies) * metric_area(set, sizing), parameters.max_quads);
     if quads > 4.0 * max_quads as f64 {
         let fault = format!("The metric requires about {quads:.1e} quadrilaterals, but max_quads is {max_quads}");
         return Err(Fault::new(fault).of_kind(FaultKind::Limit).remedy("Increase the sizes or max_quads"));

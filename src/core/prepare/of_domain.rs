@@ -7,7 +7,7 @@ use glam::DVec2;
 use super::graded::bounded;
 use super::need::allow_sizes;
 use super::spacing::{Divided, divided};
-use super::{Background, layers, walls};
+use super::{Background, layers, symmetric, walls};
 use crate::core::background::adapt::adapt;
 use crate::core::background::triangulate::divide_by;
 use crate::core::background::{Adapted, DividedDomain, Division};
@@ -34,6 +34,7 @@ pub(super) fn from_domain(
     domain: Domain,
     own: Option<Vec<Field>>,
     lines: FileLines,
+    more: &[i32],
     watch: &mut dyn Watch,
 ) -> Result<Background, Fault> {
     watch.tell(Stage::Divide, 0, 0);
@@ -50,26 +51,46 @@ pub(super) fn from_domain(
         fields.extend(size_at(point, domain.size)?);
     }
     let mut sizing = Sizing::new(fields, case.parameters.size_scale).on(atlas.clone());
-    sizing.survey(&domain.sample_points(SURVEYED), &|p| domain.inside(p).is_some())?;
-    let layered =
-        layers::layered_curves(&domain, &case.parameters).map_err(|fault| fault.of_kind(FaultKind::Parameter))?;
+    let points = domain.sample_points(SURVEYED);
+    sizing.survey(&points, &|p| domain.inside(p).is_some())?;
+    let mut half = case.symmetry.map(|symmetry| symmetric::half(&domain, symmetry, &sizing, &points)).transpose()?;
+    if let Some(half) = &mut half {
+        half.domain.limit_chords(&shape_limits(case), &|_| true);
+        half.give_segments(more);
+        half.give_points(&case.points)?;
+    }
+    let mirror = half.as_ref().map(|half| half.mirror);
+    let layered = layers::layered_curves(&domain, &case.parameters);
+    let layered = layered.map_err(|fault| fault.of_kind(FaultKind::Parameter))?;
+    let layered = match (layered, &half) {
+        (Some(curves), Some(half)) => Some(half.parts_of(&domain, &curves)),
+        (layered, _) => layered,
+    };
+    let whole = &domain;
+    let domain = half.as_ref().map_or(whole, |half| &half.domain);
+    sizing = sizing.mirrored(mirror);
     watch.tell(Stage::Triangulate, 0, 0);
-    let first = divided(&domain, &sizing, layers_in_gaps(case), case.gradation)?;
+    let first = divided(domain, &sizing, layers_in_gaps(case), case.gradation)?;
     sizing = first.sizing.clone();
     let (mut spacing, gaps) = (first.spacing.clone(), first.gaps.clone());
     let mut shaped = first.divided.shaped;
-    let mut made = adapted_mesh(case, &domain, first, watch)?;
+    let mut made = adapted_mesh(case, domain, first, watch)?;
     if let Some(beta) = case.gradation {
-        sizing = Sizing::new(vec![bounded(&made.mesh, &sizing, beta)?], 1.0).on(atlas);
+        sizing = Sizing::new(vec![bounded(&made.mesh, &sizing, beta)?], 1.0).on(atlas).mirrored(mirror);
         watch.tell(Stage::Triangulate, 0, 0);
-        let (divided, set) = divide_by(Division::measure(&domain, &sizing)?.across(&gaps)?)?;
+        let (divided, set) = divide_by(Division::measure(domain, &sizing)?.across(&gaps)?)?;
         spacing.follow(&divided);
         shaped = shaped.max(divided.shaped);
         let again = Divided { divided, set, sizing: sizing.clone(), spacing: spacing.clone(), gaps };
-        made = adapted_mesh(case, &domain, again, watch)?;
+        made = adapted_mesh(case, domain, again, watch)?;
+    }
+    if let Some(half) = &half {
+        made.mesh.set_symmetry(symmetric::symmetry(&made.mesh, half, &made.lines, &made.hard));
+        layers::not_along_the_line(&mut made.mesh, case.parameters.layers);
     }
     if has_own_fields {
-        sizing = sizing.with_walls(walls::of_fields(case, &domain, &made.divided));
+        let with_images = |curves: &[String]| half.as_ref().map(|half| half.with_images(whole, curves));
+        sizing = sizing.with_walls(walls::of_fields(case, domain, &made.divided, &with_images));
     }
     if let Some(curves) = layered {
         layers::offset_only(&mut made.mesh, &made.divided, &curves, case.parameters.layers);
@@ -79,13 +100,20 @@ pub(super) fn from_domain(
     let on_line = |&(ends, curve): &([PointId; 2], u32)| Some((ends, lines.of_curve.get(curve as usize).copied()??));
     let sides = made.lines.iter().filter_map(on_line).collect();
     let mut names = Names::of_faces(faces).with_lines(lines.names, sides);
-    let own = case.points.iter().map(|point| vec![Some(Named::new(&point.name))]);
-    names.further.points = named_points(&lines.points.unwrap_or_else(|| own.collect()), &made.hard);
+    names.further.points = match (lines.points, &half) {
+        (Some(groups), _) => named_points(&groups, &made.hard),
+        (None, Some(half)) => symmetric::named_points(half, &case.points, &made.mesh, &made.hard),
+        (None, None) => {
+            let own = case.points.iter().map(|point| vec![Some(Named::new(&point.name))]);
+            named_points(&own.collect::<Vec<_>>(), &made.hard)
+        }
+    };
     let mut repairs = Vec::new();
     Repair::RepeatedPoint.report(domain.merged_points, &mut repairs);
     Repair::JoinedEnd.report(domain.joined_ends, &mut repairs);
     Repair::ShapedCurve.report(shaped, &mut repairs);
-    Ok(Background { mesh: made.mesh, sizing, names, adapted: made.adapted, repairs, spacing })
+    let mirror_line = half.map_or_else(Vec::new, |half| half.segments(&made.divided.chains));
+    Ok(Background { mesh: made.mesh, sizing, names, adapted: made.adapted, repairs, spacing, mirror_line })
 }
 
 /// The lines and hard points of the file of a domain.
@@ -149,11 +177,14 @@ fn size_at(point: &PointSpec, extent: f64) -> Result<Option<Field>, Fault> {
 fn adapted_mesh(case: &Case, domain: &Domain, of: Divided, watch: &mut dyn Watch) -> Result<AdaptedMesh, Fault> {
     let Divided { divided, set, sizing, .. } = of;
     let metric = set.uv.iter().map(|&uv| sizing.metric(uv)).collect::<Result<_, _>>()?;
-    allow_sizes(&set, &sizing, &case.parameters, watch)?;
+    // The mirror image of a half counts too.
+    let copies = if case.symmetry.is_some() { 2 } else { 1 };
+    allow_sizes(&set, &sizing, &case.parameters, copies, watch)?;
     watch.tell(Stage::Adapt, 0, 0);
     // A unit mesh has about 2.3 triangles for each quadrilateral that the metric asks for (docs/algorithm.md,
     // "Adaptation to the metric").
-    let most = usize::try_from(case.parameters.max_quads.saturating_mul(3)).unwrap_or(usize::MAX);
+    let most = (case.parameters.max_quads / u64::from(copies)).saturating_mul(3);
+    let most = usize::try_from(most).unwrap_or(usize::MAX);
     let hard = set.hard.iter().map(|&(node, number)| (number, set.point[node as usize])).collect();
     let mut mesh = Mesh::from_triangles(&set, metric);
     if let Some(spatial) = &domain.spatial {

@@ -2,8 +2,7 @@
 
 use glam::DVec2;
 
-use super::{Background, Spacing};
-use crate::core::background::Adapted;
+use super::Background;
 use crate::core::background::import::import;
 use crate::core::case::Case;
 use crate::core::fault::Fault;
@@ -54,12 +53,5 @@ pub(super) fn from_elements(
     }
     mesh.commit();
     let names = Names::of_faces(imported.regions);
-    Ok(Background {
-        mesh,
-        sizing,
-        names,
-        adapted: Adapted::default(),
-        repairs: Vec::new(),
-        spacing: Spacing::default(),
-    })
+    Ok(Background::given(mesh, sizing, names))
 }

@@ -4,11 +4,10 @@ use std::sync::Arc;
 
 use glam::DVec2;
 
+use super::Background;
 use super::graded::bounded;
 use super::need::allow_triangles;
 use super::of_domain::{FileLines, from_domain, named_points, shape_limits};
-use super::{Background, Spacing};
-use crate::core::background::Adapted;
 use crate::core::background::implied_metric::implied_metric;
 use crate::core::background::import::import;
 use crate::core::case::{Case, MeshSource, MeshUse, Taking};
@@ -81,14 +80,7 @@ pub(super) fn from_mesh(
     }
     let mut names = Names::of_faces(imported.regions).with_lines(imported.lines, imported.set.lines);
     names.further = imported.further;
-    Ok(Background {
-        mesh,
-        sizing,
-        names,
-        adapted: Adapted::default(),
-        repairs: imported.repairs,
-        spacing: Spacing::default(),
-    })
+    Ok(Background { repairs: imported.repairs, ..Background::given(mesh, sizing, names) })
 }
 
 /// A mesh as a surface without CAD: its shape remeshed, or its own triangles, chart by chart. Sizes are those of the
@@ -134,7 +126,7 @@ fn from_surface(
     } else {
         let mut domain = surface.domain;
         domain.limit_chords(&shape_limits(case), &|curve| surface.features[curve]);
-        from_domain(case, domain, Some(fields), lines, watch)
+        from_domain(case, domain, Some(fields), lines, &[], watch)
     };
     let mut made = made.map_err(here)?;
     made.names.faces = faces;
@@ -175,12 +167,5 @@ fn from_own_triangles(
     let hard: Vec<_> = set.hard.iter().map(|&(node, number)| (number, set.point[node as usize])).collect();
     let mut names = Names::default().with_lines(lines.names, set.lines);
     names.further.points = named_points(&lines.points.unwrap_or_default(), &hard);
-    Ok(Background {
-        mesh,
-        sizing,
-        names,
-        adapted: Adapted::default(),
-        repairs: Vec::new(),
-        spacing: Spacing::default(),
-    })
+    Ok(Background::given(mesh, sizing, names))
 }

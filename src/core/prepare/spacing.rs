@@ -27,6 +27,18 @@ pub struct Spacing {
     pub narrow_gaps: Option<NarrowGaps>,
     /// Points of polylines at which they turn by less than `corner_angle`: they are no corners.
     pub smooth_points: usize,
+    /// The segments on the mirror line, where they are not as many as the sizes ask for.
+    pub mirror_line: Option<MirrorLine>,
+}
+
+/// How the mirror line of a symmetric domain is divided, wherever it runs through a face.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct MirrorLine {
+    /// The number of segments of each part of it.
+    pub segments: Vec<u32>,
+    /// The numbers that the sizes ask for.
+    pub by_sizes: Vec<u32>,
 }
 
 /// Segments from which sizes grow.
@@ -123,8 +135,17 @@ impl Spacing {
                 format!("{pairs}, down to {width} wide; equal numbers of segments on both sides are not possible")
             }
         };
+        let line = |line: &MirrorLine| {
+            let list = |numbers: &[u32]| {
+                let words: Vec<String> = numbers.iter().map(u32::to_string).collect();
+                words.join(", ")
+            };
+            let (segments, by_sizes) = (list(&line.segments), list(&line.by_sizes));
+            format!("mirror line with {segments} segments instead of {by_sizes}, for fewer irregular nodes")
+        };
         let points = Some(&self.smooth_points).filter(|points| **points > 0);
-        self.forced.iter().map(forced).chain(self.narrow_gaps.iter().map(gaps)).chain(points.map(smooth)).collect()
+        let boundary = self.forced.iter().map(forced).chain(self.narrow_gaps.iter().map(gaps));
+        boundary.chain(points.map(smooth)).chain(self.mirror_line.iter().map(line)).collect()
     }
 }
 
@@ -177,7 +198,7 @@ pub(super) fn divided(domain: &Domain, asked: &Sizing, layers: u32, gradation: O
     let courses = domain.curves.iter().enumerate().filter(is_first).map(|(_, curve)| &curve.curve);
     let smooth_points = courses.map(Course::smooth_points).sum();
     let forced = (!sides.is_empty()).then(|| Forced::of(&sides, beta, gradation.is_some()));
-    let mut spacing = Spacing { forced, narrow_gaps, smooth_points };
+    let mut spacing = Spacing { forced, narrow_gaps, smooth_points, mirror_line: None };
     spacing.follow(&divided);
     Ok(Divided { divided, set, sizing, spacing, gaps })
 }

@@ -2,6 +2,7 @@
 
 mod counts;
 pub mod figures;
+mod symmetry;
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -10,6 +11,8 @@ use std::io;
 use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
 use serde_json::ser::{Formatter, PrettyFormatter};
+
+pub use symmetry::SymmetryRecord;
 
 use super::export::Export;
 use super::statistics::{Angles, Range, Statistics};
@@ -43,6 +46,9 @@ pub struct Report {
     /// Whether the mesh lies on surfaces, so that physical values are those in space.
     #[serde(skip)]
     pub on_surfaces: bool,
+    /// How many nodes have a mirror image, if the case asks for symmetry.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub symmetry: Option<SymmetryRecord>,
     /// The share of the last resort.
     pub last_resort: LastResort,
     /// Repairs of a given mesh, as readable phrases.
@@ -137,6 +143,7 @@ impl Report {
             valid,
             mesh: Statistics::measure(export.measured(), &converted.sizing)?,
             on_surfaces: converted.mesh.embedding().is_some(),
+            symmetry: converted.mesh.symmetry().map(|symmetry| SymmetryRecord::of(export, symmetry.mirror())),
             last_resort: LastResort::of(resort, (converted.counts.formed + converted.counts.closed) as usize + resort),
             repairs: converted.repairs.clone(),
             spacing: converted.spacing.clone(),
@@ -205,6 +212,9 @@ impl Report {
                     verdict.warpage.min
                 ),
             );
+        }
+        if let Some(symmetry) = &self.symmetry {
+            row("symmetry", symmetry.text());
         }
         row(
             "last resort",
@@ -404,6 +414,7 @@ mod tests {
             valid: true,
             mesh: Statistics::measure(mesh, &Growing).unwrap(),
             on_surfaces: false,
+            symmetry: None,
             last_resort: LastResort::of(3, 3),
             repairs: vec!["2 clockwise triangles were reversed".to_owned()],
             spacing: Spacing::default(),

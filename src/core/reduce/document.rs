@@ -267,7 +267,7 @@ mod tests {
         let plain = |text: &str| {
             let case = Case::parse(text, "a", "a.toml", Path::new("")).unwrap();
             let lines = without_lines(&format!("{:?} {:?}", case.domain, case.fields));
-            (case.title, case.parameters, case.gradation, case.split_odd, lines)
+            (case.title, case.parameters, case.gradation, case.symmetry, case.split_odd, lines)
         };
         for (name, text) in built_in::all() {
             let written = Keys::parse(text, "a.toml").unwrap().written();

@@ -10,12 +10,13 @@ use super::search::Search;
 use crate::core::fault::Fault;
 
 /// Keys of a case that have a default.
-pub(super) const OPTIONS: [&str; 11] = [
+pub(super) const OPTIONS: [&str; 12] = [
     "gradation",
     "corner_angle",
     "tolerance",
     "chord",
     "least_segments",
+    "symmetry",
     "split_odd",
     "ignore_groups",
     "use",

@@ -169,6 +169,7 @@ pub(super) fn changes_front(event: &Event) -> bool {
             | Event::Unfolded { .. }
             | Event::FaceConverted { .. }
             | Event::PostProcessed
+            | Event::Mirrored { .. }
             | Event::Finished
     )
 }

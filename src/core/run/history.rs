@@ -406,10 +406,9 @@ impl History {
     /// The step from which a leap to a step starts: some steps earlier, so that these can be undone at once. In the
     /// global post-processing, where a step may sweep the whole mesh, one step earlier is enough.
     fn before(&self, step: u64) -> u64 {
-        let sweeps = self
-            .log
-            .kind(step)
-            .is_some_and(|kind| matches!(kind, EventKind::RowLaid | EventKind::Swept | EventKind::PostProcessed));
+        let sweeps = self.log.kind(step).is_some_and(|kind| {
+            matches!(kind, EventKind::RowLaid | EventKind::Swept | EventKind::PostProcessed | EventKind::Mirrored)
+        });
         step.saturating_sub(if sweeps { 1 } else { BEHIND })
     }
 

@@ -4,10 +4,10 @@ use std::sync::Arc;
 
 use super::shown::Shown;
 use crate::core::case::{Case, Parameters};
-use crate::core::convert::Converter;
+use crate::core::convert::{Converter, background};
 use crate::core::fault::{Fault, FaultKind};
 use crate::core::mesh::NodeId;
-use crate::core::prepare::{Background, background};
+use crate::core::prepare::Background;
 use crate::core::progress::Watch;
 
 /// Parameters of the background mesh: they can change for a whole run only.

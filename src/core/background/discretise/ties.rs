@@ -170,7 +170,7 @@ impl Division<'_> {
         let places = || self.tied(tie).map(|place| self.piece(place));
         let n = places().next()?.segments;
         let least_of = |(curve, piece): Place| {
-            let least = if self.domain.is_closed(curve) { 3 } else { 1 };
+            let least = self.domain.least_segments(curve);
             self.pieces[curve.index()][piece].least.max(least)
         };
         let least = self.tied(tie).map(least_of).max()?;

@@ -8,6 +8,7 @@ mod counts;
 mod explaining;
 mod waiting;
 mod faces;
+mod image;
 mod taking_back;
 
 pub use counts::Counts;
@@ -177,7 +178,7 @@ impl<'a> Converter<'a> {
     pub fn standing(&self) -> u64 {
         match &self.phase {
             // Everything but the faces to come is a quadrilateral, also what clean-up has put in the place of others.
-            Phase::PostProcess { .. } | Phase::NextFace | Phase::Done => self.all_but_waiting(),
+            Phase::PostProcess { .. } | Phase::NextFace | Phase::Mirror | Phase::Done => self.all_but_waiting(),
             phase => {
                 let last = if let Phase::Patch { plan, patch, .. } = phase { plan.quads_before(*patch) } else { 0 };
                 self.begun.stood + self.made() - self.begun.made + last as u64
@@ -222,8 +223,9 @@ impl<'a> Converter<'a> {
         self.counts.steps += 1;
         let event = loop {
             let phase = std::mem::replace(&mut self.phase, Phase::Done);
+            let is_half = self.is_half(&phase);
             let (next, event) = self.act(phase)?;
-            self.phase = next;
+            self.phase = if is_half && next == Phase::Done { Phase::Mirror } else { next };
             if let Some(event) = event {
                 break event;
             }
@@ -271,6 +273,7 @@ impl<'a> Converter<'a> {
             Phase::Patch { left, at, plan, patch } => close::patch(front, left, at, plan, patch, &mut self.last_resort),
             Phase::PostProcess { part } => self.post_processing().step(part),
             Phase::NextFace => self.next_face(),
+            Phase::Mirror => self.add_image()?,
             Phase::Done => (Phase::Done, Some(Event::Finished)),
         })
     }

@@ -87,6 +87,7 @@ kinds! {
         Unfolded "unfolded",
         FaceConverted "face_converted",
         PostProcessed "post_processed",
+        Mirrored "mirrored",
         Finished "finished",
     }
 }

@@ -58,6 +58,7 @@ impl Mesh {
             first_level: if self.first_level.is_empty() { Vec::new() } else { nodes.iter().map(level).collect() },
             refusals: self.refusals,
             embedding: self.embedding.clone(),
+            symmetry: self.symmetry.clone(),
             ..Mesh::default()
         }
     }

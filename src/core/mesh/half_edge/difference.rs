@@ -156,7 +156,7 @@ impl Mesh {
         }
         copy! {
             places anchor point origin twin sides region level deferred first_level
-            free_nodes free_elements closed refusals embedding
+            free_nodes free_elements closed refusals embedding symmetry
         }
         self.journal = Journal::default();
     }

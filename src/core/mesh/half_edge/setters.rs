@@ -23,7 +23,7 @@ impl Mesh {
     }
 
     #[inline]
-    fn set_twin(&mut self, h: HalfEdgeId, twin: Option<HalfEdgeId>) {
+    pub(super) fn set_twin(&mut self, h: HalfEdgeId, twin: Option<HalfEdgeId>) {
         let old = std::mem::replace(&mut self.twin[h.index()], twin.map_or(NONE, |t| t.0));
         self.journal.note(Entry::Twin(h, old));
     }
@@ -83,8 +83,14 @@ impl Mesh {
         }
     }
 
+    /// Gives a node an output point, or none.
+    pub(super) fn set_point(&mut self, node: NodeId, point: u32) {
+        let old = std::mem::replace(&mut self.point[node.index()], point);
+        self.journal.note(Entry::Point(node, old));
+    }
+
     #[inline]
-    fn set_anchor(&mut self, node: NodeId, h: HalfEdgeId) {
+    pub(super) fn set_anchor(&mut self, node: NodeId, h: HalfEdgeId) {
         let old = std::mem::replace(&mut self.anchor[node.index()], h.0);
         self.journal.note(Entry::Anchor(node, old));
     }

@@ -114,6 +114,7 @@ impl Mesh {
             Entry::Metric(n, old) => Entry::Metric(n, replace(&mut self.places[n.index()].metric, old)),
             Entry::Closed(old) => Entry::Closed(replace(&mut self.closed, old)),
             Entry::Anchor(n, old) => Entry::Anchor(n, replace(&mut self.anchor[n.index()], old)),
+            Entry::Point(n, old) => Entry::Point(n, replace(&mut self.point[n.index()], old)),
             Entry::NodeAppended => {
                 let last = self.places.len() - 1;
                 let node = self.node_slot(NodeId(last as u32));

@@ -81,7 +81,9 @@ impl Touched {
             }
             Entry::Twin(h, _) | Entry::Deferred(h, _) => self.element(h.element()),
             Entry::Region(e, _) | Entry::Level(e, _) | Entry::ElementTaken(e) => self.element(e),
-            Entry::Uv(n, _) | Entry::Metric(n, _) | Entry::Anchor(n, _) | Entry::NodeTaken(n) => self.node(n),
+            Entry::Uv(n, _) | Entry::Metric(n, _) | Entry::Anchor(n, _) | Entry::Point(n, _) | Entry::NodeTaken(n) => {
+                self.node(n)
+            }
             // Other entries fill or empty the slots that are appended or freed.
             Entry::NodeAppended
             | Entry::ElementAppended

@@ -87,6 +87,10 @@ pub fn about(event: &Event, before: &LookedAt, after: &Converter<'_>) -> Vec<Str
         Event::Unfolded { sine, .. } => unfolded(*sine),
         Event::FaceConverted { .. } => one("Nothing of this face is left to convert; the next one is taken."),
         Event::PostProcessed => one("No node waits to be smoothed any more (4.3.7)."),
+        Event::Mirrored { .. } => one(
+            "The case asks for symmetry: one half of the domain was converted, and the other one is its image to the \
+             last bit. Nodes inside the mirror line lie on no boundary any more.",
+        ),
         Event::Finished => one("Nothing is left to convert."),
     }
 }

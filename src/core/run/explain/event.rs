@@ -150,6 +150,11 @@ pub fn event(event: &Event) -> String {
             format!("the last resort has converted {} triangles", grouped(outcome.triangles as u64))
         }
         Event::PostProcessed => "whole mesh cleaned up and smoothed".to_owned(),
+        Event::Mirrored { quads, nodes, on_line } => format!(
+            "mirror image added: {}, {}; {on_line} on the mirror line",
+            count(quads, "quadrilateral"),
+            count(nodes, "node")
+        ),
         Event::Finished => "done".to_owned(),
     }
 }

@@ -119,6 +119,13 @@ pub fn narration(event: &Event, base: Option<[NodeId; 2]>) -> String {
             format!("face {} has only quadrilaterals now, so the next face can be converted", region + 1)
         }
         Event::PostProcessed => "the clean-up and the smoothing of all quadrilaterals are finished".to_owned(),
+        Event::Mirrored { quads, nodes, on_line } => format!(
+            "the other half of the domain is filled with the mirror image of this one, {} and {}; the two halves share \
+             {} on the mirror line",
+            count(quads, "quadrilateral"),
+            count(nodes, "node"),
+            count(on_line, "node")
+        ),
         Event::Finished => "the conversion is finished".to_owned(),
     };
     format!("{}.", capital(&told))

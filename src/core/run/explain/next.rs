@@ -70,6 +70,7 @@ pub fn next(state: &Converter<'_>, selecting: &Selecting) -> String {
         }
         Phase::PostProcess { part } => finish(*part, parameters.clean_up).to_owned(),
         Phase::NextFace => "The next face is converted, if there is one.".to_owned(),
+        Phase::Mirror => "The mirror image of the half is added and joined along the mirror line.".to_owned(),
         Phase::Done => "Nothing: the conversion is finished.".to_owned(),
     }
 }
