@@ -7,10 +7,11 @@ mod random;
 
 use glam::DVec2;
 use quadfront::core::case::{Case, built_in};
+use quadfront::core::convert::background;
 use quadfront::core::kernel::Metric2;
 use quadfront::core::mesh::{Mesh, NodeId};
 use quadfront::core::metric::{MetricSource, Sizing};
-use quadfront::core::prepare::{Background, background};
+use quadfront::core::prepare::Background;
 use quadfront::core::progress::Nobody;
 
 use random::Random;
