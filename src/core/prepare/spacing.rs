@@ -132,7 +132,7 @@ impl Spacing {
                 let rows = if gaps.layers == 1 { String::new() } else { format!(", for {} layers each", gaps.layers) };
                 format!("nodes face each other across {pairs}, down to {width} wide{rows}")
             } else {
-                format!("{pairs}, down to {width} wide; equal numbers of segments on both sides are not possible")
+                format!("{pairs}, down to {width} wide; equal numbers of segments on both sides did not work out")
             }
         };
         let line = |line: &MirrorLine| {

@@ -40,6 +40,8 @@ pub struct Loaded {
     pub has_metric: bool,
     /// How many regions it has.
     pub regions: usize,
+    /// Whether it has named groups.
+    pub has_groups: bool,
     /// What was repaired, and what was skipped.
     pub repairs: Vec<String>,
     /// The mean length of its edges.
@@ -171,7 +173,7 @@ fn load(path: &Path, ignored: &Ignored, voice: &mut Voice) -> Result<Loaded, Fau
     let mut file = read_mesh_watched(path, None, voice)?;
     let place = |fault: Fault| if fault.is_stop() { fault } else { fault.at(path.display().to_string()) };
     file.ignore_groups(ignored).map_err(place)?;
-    let (is_plane, has_metric) = (file.is_plane(), file.metric.is_some());
+    let (is_plane, has_metric, has_groups) = (file.is_plane(), file.metric.is_some(), !file.groups.is_empty());
     let skipped: Vec<String> =
         file.skipped.iter().map(|(kind, count)| format!("not read: {kind} ({count} times)")).collect();
     let (mut found, fault) = match repair(&file, voice) {
@@ -202,7 +204,19 @@ fn load(path: &Path, ignored: &Ignored, voice: &mut Voice) -> Result<Loaded, Fau
     let ends = used.map(|p| [p, p]).reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])]);
     let extent = ends.map_or(DVec3::ZERO, |[low, high]| high - low);
     let (regions, repairs) = (found.regions.len(), found.repairs);
-    Ok(Loaded { mesh: found.mesh, edges, census, is_plane, has_metric, regions, repairs, mean_edge, extent, fault })
+    Ok(Loaded {
+        mesh: found.mesh,
+        edges,
+        census,
+        is_plane,
+        has_metric,
+        regions,
+        has_groups,
+        repairs,
+        mean_edge,
+        extent,
+        fault,
+    })
 }
 
 /// What is known of the mesh, and for which options it was computed.

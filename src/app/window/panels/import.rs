@@ -139,7 +139,11 @@ fn form(ui: &mut Ui, import: &Import, commands: &mut Vec<Command>, palette: &Pal
     heading(ui, "Import", "as on the command line", palette);
     ui.spacing_mut().item_spacing.y = 5.0;
     unit(ui, &mut options, &taking, &mut dragging, palette);
-    groups(ui, &mut options, palette);
+    // Once groups are ignored, the mesh has none.
+    let has_groups = import.loaded.as_ref().is_some_and(|loaded| loaded.has_groups);
+    if has_groups || options.ignore_groups != Ignored::Nothing {
+        groups(ui, &mut options, palette);
+    }
     used(ui, &mut options, import, palette);
     sizes(ui, &mut options, import, &mut dragging, palette);
     let charted = import.has_charts();
