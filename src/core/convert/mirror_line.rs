@@ -17,8 +17,8 @@ const CHANGES: [i32; 2] = [2, -2];
 /// Elements may become so many times more or fewer.
 const MOST_MORE: f64 = 1.1;
 
-/// Makes the background mesh of a case. The parts of the mirror line of a symmetric domain get, one after the other, two
-/// segments more or fewer than their sizes ask for, if the mesh then has fewer irregular nodes, and about as many
+/// Makes the background mesh of a case. The parts of the mirror line of a symmetric domain get, one after the other,
+/// two segments more or fewer than their sizes ask for, if the mesh then has fewer irregular nodes, and about as many
 /// elements.
 ///
 /// # Errors

@@ -20,8 +20,8 @@ const HALVED: [usize; 2] = [40, 10_000];
 const TRIANGLES_PER_QUAD: f64 = 2.4;
 
 /// Whether the sizes that a metric asks for on the triangles of the boundary, of which the mesh has so many copies, are
-/// within `max_quads` and what the watch allows, before any memory is spent on them. The estimate is rough, so that only
-/// what is beyond doubt is refused for `max_quads`. The adaptation itself holds the bound.
+/// within `max_quads` and what the watch allows, before any memory is spent on them. The estimate is rough, so that
+/// only what is beyond doubt is refused for `max_quads`. The adaptation itself holds the bound.
 ///
 /// # Errors
 /// They ask for more, or the watch's own fault.

@@ -102,8 +102,8 @@ pub(super) fn named_points(
     both.into_iter().map(|(_, named)| named).collect()
 }
 
-/// How the image of the mesh of a half is joined to it; `lines` are the sides on the curves of the half, `hard` its hard
-/// points.
+/// How the image of the mesh of a half is joined to it; `lines` are the sides on the curves of the half, `hard` its
+/// hard points.
 pub(super) fn symmetry(mesh: &Mesh, half: &Half, lines: &[([PointId; 2], u32)], hard: &[(u32, PointId)]) -> Images {
     let joint = |curve: u32| half.joints.iter().find(|joint| joint.0.0 == curve).map(|joint| joint.1);
     let borders = lines.iter().filter_map(|&(ends, curve)| Some((ends, joint(curve)?))).collect();
