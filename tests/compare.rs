@@ -6,7 +6,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use glam::DVec2;
-use quadfront::core::case::built_in;
+use quadfront::core::case::{Symmetry, built_in};
 use quadfront::core::convert::walk::walk;
 use quadfront::core::convert::{Converter, Event, EventKind, Phase, StepReport};
 use quadfront::core::mesh::{Mesh, NodeId};
@@ -339,8 +339,11 @@ fn every_kind_of_step_says_why() {
         ("gear", vec![("theta_seam", "0"), ("splitting", "false")]),
         ("wing", vec![]),
     ];
-    for (name, set) in figures.chain(others) {
-        let mut history = History::open(run(name, &set), &mut Nobody).unwrap();
+    let mut mirrored = run("uniform", &[("size_scale", "3")]);
+    mirrored.case.symmetry = Some(Symmetry::Auto);
+    let runs = figures.chain(others).map(|(name, set)| (name, run(name, &set)));
+    for (name, run) in runs.chain([("uniform", mirrored)]) {
+        let mut history = History::open(run, &mut Nobody).unwrap();
         history.extend(u64::MAX);
         let kinds: Vec<EventKind> = history.log().kinds(1, history.log().known()).collect();
         for (kind, step) in kinds.into_iter().zip(1..) {
