@@ -7,10 +7,10 @@ use std::collections::{BTreeMap, BTreeSet};
 use glam::DVec3;
 use quadfront::core::case::{Case, Symmetry, built_in};
 use quadfront::core::convert::conversion::convert;
-use quadfront::core::convert::{Converted, Event, Phase};
+use quadfront::core::convert::{Converted, Event, Phase, background};
 use quadfront::core::progress::Nobody;
-use quadfront::core::record::Export;
-use quadfront::core::record::report::Report;
+use quadfront::core::record::report::{Report, background_summary};
+use quadfront::core::record::{Export, Statistics};
 use quadfront::core::run::{History, Run};
 use quadfront::core::soup::soundness::examine;
 use quadfront::core::soup::{MeshFile, Soundness};
@@ -299,4 +299,17 @@ fn what_is_told_of_the_line_is_how_it_is_divided() {
         told += 1;
     }
     assert!(told > 2, "{told}");
+}
+
+#[test]
+fn a_background_says_that_it_is_one_half() {
+    let domain = &all()[0];
+    let text = |case: &Case| {
+        let made = background(case, &mut Nobody).unwrap();
+        let export = Export::of(&made.mesh, &made.names);
+        let statistics = Statistics::measure(export.measured(), &made.sizing).unwrap();
+        background_summary(case, &statistics, &made.repairs, &made.spacing, &[])
+    };
+    assert!(text(&domain.symmetric()).contains("one half; the last step of the conversion adds its mirror image"));
+    assert!(!text(&domain.case("")).contains("one half"));
 }

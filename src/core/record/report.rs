@@ -289,6 +289,9 @@ pub fn background_summary(
     row(&mut text, "background", &format!("{}, {nodes}", counted(mesh.triangles as u64, "triangle")));
     row(&mut text, "edge length", &lengths(mesh));
     row(&mut text, "quality, metric", &quality);
+    if case.symmetry.is_some() {
+        row(&mut text, "symmetry", "one half; the last step of the conversion adds its mirror image");
+    }
     rows_of_work(&mut text, repairs, spacing, timing);
     text
 }
