@@ -68,7 +68,7 @@ impl Walled {
         Walled { points, joined, quads: at, wall, boundary: border.into_iter().flatten().collect() }
     }
 
-    fn from_to(&self, a: u32, b: u32) -> DVec2 {
+    fn vector(&self, a: u32, b: u32) -> DVec2 {
         self.points[b as usize] - self.points[a as usize]
     }
 
@@ -83,10 +83,10 @@ impl Walled {
     fn rows(&self) -> Rows {
         let mut rows = Rows { lean: Vec::new(), first: Vec::new(), growth: Vec::new() };
         for (&node, &[before, after]) in &self.wall {
-            let sides = [self.from_to(before, node), self.from_to(node, after)].map(DVec2::normalize);
+            let sides = [self.vector(before, node), self.vector(node, after)].map(DVec2::normalize);
             let normals = sides.map(DVec2::perp);
             for &top in self.joined[&node].iter().filter(|n| !self.boundary.contains(n)) {
-                let up = self.from_to(node, top);
+                let up = self.vector(node, top);
                 let mean = (normals[0] + normals[1]).normalize();
                 let turn = normals[0].angle_to(normals[1]).to_degrees();
                 let off = mean.angle_to(up).abs().to_degrees();
@@ -97,7 +97,7 @@ impl Walled {
                 for _ in 0..4 {
                     let Some(next) = self.onward(from, to) else { break };
                     (from, to) = (to, next);
-                    let higher = self.from_to(from, to).length();
+                    let higher = self.vector(from, to).length();
                     rows.growth.push(higher / height);
                     height = higher;
                 }

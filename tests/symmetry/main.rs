@@ -67,7 +67,7 @@ fn check_image(mesh: &MeshFile, axis: char, about: f64, name: &str) -> f64 {
         let image = sorted(quad.map(|n| zero(images[n as usize].unwrap())));
         assert!(quads.contains(&image), "{name}: a quadrilateral has no image");
     }
-    assert!(mesh.triangles.is_empty() && mesh.quads.len() % 2 == 0, "{name}");
+    assert!(mesh.triangles.is_empty() && mesh.quads.len().is_multiple_of(2), "{name}");
     sum
 }
 

@@ -21,7 +21,7 @@ impl Curve {
                 let place = |k: usize| if k < n { k as f64 / n as f64 } else { 1.0 + (k - n) as f64 / n as f64 };
                 let inner: Vec<usize> = (1..2 * n).filter(|&k| from < place(k) && place(k) < to).collect();
                 // The start of a closed polyline stays a node.
-                let is_corner = |k: usize| k % n == 0 || corners.contains(&((k % n) as u32));
+                let is_corner = |k: usize| k.is_multiple_of(n) || corners.contains(&((k % n) as u32));
                 let corners = (1..).zip(&inner).filter(|(_, k)| is_corner(**k)).map(|(i, _)| i).collect();
                 let inner = inner.into_iter().map(|k| points[k % n]);
                 Path::Polyline { points: [ends[0]].into_iter().chain(inner).chain([ends[1]]).collect(), corners }
