@@ -8,9 +8,11 @@ use glam::DVec3;
 use quadfront::core::case::{Case, Symmetry, built_in};
 use quadfront::core::convert::conversion::convert;
 use quadfront::core::convert::{Converted, Event, Phase, background};
+use quadfront::core::mesh::Mesh;
 use quadfront::core::progress::Nobody;
 use quadfront::core::record::report::{Report, background_summary};
 use quadfront::core::record::{Export, Statistics};
+use quadfront::core::run::timeline::{Timeline, Tracked};
 use quadfront::core::run::{History, Run};
 use quadfront::core::soup::soundness::examine;
 use quadfront::core::soup::{MeshFile, Soundness};
@@ -151,9 +153,20 @@ fn faces_curves_and_cracks_stay_what_they_are() {
     assert!(!distinct.is_empty() && places.len() == 2 * distinct.len(), "{} and {}", places.len(), distinct.len());
 }
 
+/// The number of edges of a mesh, by the nodes at their ends.
+fn edges(mesh: &Mesh) -> i64 {
+    let ends = mesh.elements().flat_map(|e| mesh.half_edges(e)).map(|h| mesh.ends(h));
+    ends.map(|[a, b]| [a.min(b), a.max(b)]).collect::<BTreeSet<_>>().len() as i64
+}
+
 #[test]
 fn the_image_is_one_step_that_can_be_taken_back() {
-    let domain = &all()[16];
+    for k in [1, 6, 16, 20] {
+        the_image_can_be_taken_back(&all()[k]);
+    }
+}
+
+fn the_image_can_be_taken_back(domain: &Domain) {
     let mut history = History::open(Run::of(domain.symmetric()), &mut Nobody).unwrap();
     history.seek(u64::MAX).unwrap();
     let end = history.step();
@@ -165,6 +178,15 @@ fn the_image_is_one_step_that_can_be_taken_back() {
     assert_eq!((mesh.element_count(), history.state().standing()), (2 * quads, 2 * quads as u64));
     assert!(on_line > 2 && mesh.node_count() > nodes + on_line);
     mesh.check().unwrap();
+    // By the samples of the timeline no invariant is broken: the whole has twice the area of the half.
+    let log = history.log();
+    let track: Vec<Tracked> = (1..=end).filter_map(|step| Tracked::of(log, step)).collect();
+    let samples = log.samples();
+    let timeline = Timeline::of(&track, samples);
+    assert_eq!(samples.iter().filter_map(|sample| timeline.broken(sample)).collect::<Vec<_>>(), [""; 0]);
+    let (first, last) = (samples.first().unwrap(), samples.last().unwrap());
+    assert!(last.step == end && (last.area / first.area - 2.0).abs() < 1e-12);
+    assert_eq!(last.euler, mesh.node_count() as i64 - edges(mesh) + mesh.element_count() as i64);
     history.seek(end - 1).unwrap();
     assert_eq!((history.state().mesh.element_count(), history.state().phase()), (quads, &Phase::Mirror));
     history.state().mesh.check().unwrap();

@@ -167,6 +167,9 @@ impl Recorder {
         if let Event::Formed { element, .. } = event {
             stretch.log.push_angles(self.step, angles(&self.converter.mesh, element));
         }
+        if event.kind() == EventKind::Mirrored {
+            self.measures.mirror(&self.converter.mesh);
+        }
         let phase = self.converter.phase();
         let at_rest = !phase.is_local_post_processing();
         let is_due = self.step >= self.keyframe + SPACING

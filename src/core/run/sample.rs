@@ -28,6 +28,19 @@ pub struct Sample {
     pub area_metric: f64,
     /// Nodes minus edges plus elements; it must not change.
     pub euler: i64,
+    /// Once its mirror image is joined to the half of a symmetric domain: the nodes minus the edges that both share.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub shared: Option<i64>,
+}
+
+impl Sample {
+    /// The area and the number of nodes minus edges plus elements that it must have, by the sample of step 0.
+    pub(super) fn invariants(&self, first: &Sample) -> (f64, i64) {
+        match self.shared {
+            None => (first.area, first.euler),
+            Some(shared) => (2.0 * first.area, 2 * first.euler - shared),
+        }
+    }
 }
 
 /// The measures of one element.
@@ -51,13 +64,21 @@ pub(super) struct Measures {
     chunks: Vec<(Measure, u32)>,
     stale: Vec<bool>,
     boundary: i64,
+    /// The nodes minus the edges that a half will share with its image.
+    seam: i64,
+    shared: Option<i64>,
 }
 
 impl Measures {
     pub fn of(mesh: &Mesh) -> Measures {
-        let boundary = mesh.elements().flat_map(|e| mesh.half_edges(e)).filter(|&h| mesh.twin(h).is_none()).count();
-        let mut measures =
-            Measures { elements: Vec::new(), chunks: Vec::new(), stale: Vec::new(), boundary: boundary as i64 };
+        let mut measures = Measures {
+            elements: Vec::new(),
+            chunks: Vec::new(),
+            stale: Vec::new(),
+            boundary: boundary(mesh),
+            seam: mesh.seam(),
+            shared: None,
+        };
         measures.grow(mesh);
         for e in mesh.elements() {
             measures.measure(mesh, e);
@@ -76,6 +97,12 @@ impl Measures {
         let Some(slot) = self.elements.get_mut(e.index()) else { return };
         self.stale[e.index() / CHUNK] = true;
         *slot = if mesh.has_element(e) { measured(mesh, e) } else { NOTHING };
+    }
+
+    /// The mirror image of a half was joined to it.
+    pub fn mirror(&mut self, mesh: &Mesh) {
+        self.boundary = boundary(mesh);
+        self.shared = Some(self.seam);
     }
 
     /// Measures again what was touched since the last sample.
@@ -126,8 +153,14 @@ impl Measures {
             area: total.area,
             area_metric: total.area_metric,
             euler: mesh.node_count() as i64 - (sides + self.boundary) / 2 + elements,
+            shared: self.shared,
         }
     }
+}
+
+/// The number of sides on a boundary.
+fn boundary(mesh: &Mesh) -> i64 {
+    mesh.elements().flat_map(|e| mesh.half_edges(e)).filter(|&h| mesh.twin(h).is_none()).count() as i64
 }
 
 fn measured(mesh: &Mesh, e: ElementId) -> Measure {

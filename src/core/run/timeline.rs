@@ -207,11 +207,13 @@ impl Timeline {
             let are = if sample.inverted == 1 { "is" } else { "are" };
             return Some(format!("{} {are} not positive", counted(sample.inverted as u64, "element")));
         }
-        if sample.euler != first.euler {
-            return Some(format!("nodes \u{2212} edges + elements was {} at step 0", first.euler));
+        let (area, euler) = sample.invariants(&first);
+        let then = if sample.shared.is_some() { "for both halves" } else { "at step 0" };
+        if sample.euler != euler {
+            return Some(format!("nodes \u{2212} edges + elements was {euler} {then}"));
         }
-        if (sample.area - first.area).abs() > 1e-9 * first.area.abs() {
-            return Some(format!("the area was {} at step 0", size(first.area)));
+        if (sample.area - area).abs() > 1e-9 * area.abs() {
+            return Some(format!("the area was {} {then}", size(area)));
         }
         let odd = u64::from(sample.front.odd);
         let are = if odd == 1 { "is" } else { "are" };

@@ -22,9 +22,9 @@ const DECISION: [f64; 2] = [60.0, 180.0];
 pub(super) fn aim(state: &State, moment: &Moment, size: DVec2, look: Option<Look>) -> (Camera, bool) {
     let bounds = scene::bounds(&moment.mesh).unwrap_or([DVec2::ZERO, DVec2::ONE]);
     let fitted = Camera::fit(bounds, size, MARGIN);
-    let ViewCamera { camera, mut is_fitted, size: before } = state.view().plane;
-    // A view that still shows the whole mesh goes on doing so when its size changes.
-    let mut camera = camera.filter(|_| !is_fitted || before == size).unwrap_or(fitted);
+    let ViewCamera { camera, mut is_fitted, .. } = state.view().plane;
+    // A view that still shows the whole mesh goes on doing so when its size changes, and when a half gets its image.
+    let mut camera = camera.filter(|_| !is_fitted).unwrap_or(fitted);
     match look {
         // A side is a view of space.
         None | Some(Look::From(_)) => {}

@@ -113,6 +113,14 @@ impl Mesh {
         self.symmetry.as_ref()
     }
 
+    /// The nodes minus the sides on the mirror line that a half is to share with its image; 0 without symmetry.
+    pub(in crate::core) fn seam(&self) -> i64 {
+        let Some(symmetry) = &self.symmetry else { return 0 };
+        let seams = self.seams(symmetry);
+        let glued = seams.iter().filter(|seams| seams.has(Joint::Glued)).count();
+        glued as i64 - seams.iter().filter(|seams| seams.leaving == Some(Joint::Glued)).count() as i64
+    }
+
     /// Adds the mirror image of all elements and joins it along the mirror line. Nodes inside the line become free.
     /// Coordinates are rounded first to where their images are exact ([`Mirror::rounded`]).
     ///
