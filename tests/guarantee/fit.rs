@@ -24,7 +24,7 @@ fn needed(case: &Case) -> Option<f64> {
     let domain = Domain::build(curves.clone(), faces.clone()).ok()?;
     let fields = case.fields.iter().map(|spec| Field::compile(spec, &|name| domain.curve_polyline(name)));
     let sizing = Sizing::new(fields.collect::<Result<_, _>>().ok()?, case.parameters.size_scale);
-    let points: Vec<_> = domain.sample_points(600).into_iter().filter(|&p| domain.inside(p).is_some()).collect();
+    let points: Vec<_> = domain.sample_points(200).into_iter().filter(|&p| domain.inside(p).is_some()).collect();
     let mut density = 0.0;
     for &p in &points {
         let ([low, high], [along, _]) = sizing.metric(p).ok()?.eigen();

@@ -1,8 +1,8 @@
 //! Promise: every valid case becomes strictly convex quadrilaterals, its boundary untouched (docs/algorithm.md, "What
 //! is guaranteed").
 //!
-//! Rounds of the random tests: 60 and 100, or what QUADFRONT_SOAK_ROUNDS says. QUADFRONT_SEED runs one case alone, and
-//! QUADFRONT_SHOW=1 prints its text, which the command line takes as it is.
+//! Rounds of the random tests: 60 and 100, or what QUADFRONT_SOAK_ROUNDS says, from seed 0 or QUADFRONT_SOAK_FROM on.
+//! QUADFRONT_SEED runs one case alone, and QUADFRONT_SHOW=1 prints its text, which the command line takes as it is.
 #![allow(clippy::unwrap_used)]
 
 mod fit;
@@ -137,7 +137,8 @@ fn every_random_case_becomes_convex_quadrilaterals_with_its_boundary_untouched()
     all_random_cases(100, &|seed| keep(&random_case(seed)));
 }
 
-/// Holds `one` against the cases of seeds from 0 on: as many as are asked for, unless the environment says how many.
+/// Holds `one` against the cases of seeds from 0 on: as many as are asked for, unless the environment says from which
+/// seed on and how many.
 fn all_random_cases(rounds: u64, one: &(dyn Fn(u64) -> Outcome + Sync)) {
     let one = |seed| caught(|| one(seed));
     if let Some(seed) = environment::number("QUADFRONT_SEED") {
@@ -152,13 +153,14 @@ fn all_random_cases(rounds: u64, one: &(dyn Fn(u64) -> Outcome + Sync)) {
         return;
     }
     let rounds = environment::number("QUADFRONT_SOAK_ROUNDS").unwrap_or(rounds);
-    let (next, tally) = (AtomicU64::new(0), Mutex::new(Tally::default()));
+    let from = environment::number("QUADFRONT_SOAK_FROM").unwrap_or(0);
+    let (next, tally) = (AtomicU64::new(from), Mutex::new(Tally::default()));
     std::thread::scope(|scope| {
         for _ in 0..2 {
             scope.spawn(|| {
                 loop {
                     let seed = next.fetch_add(1, Ordering::Relaxed);
-                    if seed >= rounds {
+                    if seed >= from + rounds {
                         return;
                     }
                     let begun = Instant::now();

@@ -4,7 +4,6 @@ use std::collections::BTreeMap;
 
 use glam::{DVec2, DVec3};
 use quadfront::core::case::Case;
-use quadfront::core::convert::background;
 use quadfront::core::convert::conversion::convert_by;
 use quadfront::core::convert::{Converter, Phase};
 use quadfront::core::fault::Fault;
@@ -35,12 +34,9 @@ pub fn keep(case: &Case) -> Result<Result<Kept, Fault>, String> {
 
 /// As [`keep`], with a converter that is prepared before it runs.
 pub fn keep_by(case: &Case, prepare: &mut dyn FnMut(&mut Converter<'_>)) -> Result<Result<Kept, Fault>, String> {
-    let triangles = match background(case, &mut Nobody) {
-        Ok(made) => made.mesh,
-        Err(fault) => return Ok(Err(fault)),
-    };
-    let mut ends = true;
+    let (mut triangles, mut ends) = (Mesh::default(), true);
     let converted = convert_by(case, &mut Nobody, &mut |converter, _| {
+        triangles = converter.mesh.clone();
         prepare(converter);
         while *converter.phase() != Phase::Done && ends {
             converter.step()?;

@@ -105,6 +105,12 @@ impl Plan {
             return Err(ends_where_it_begins());
         }
         plan.samples = kept.frames;
+        if walked.converter.mesh.symmetry().is_some()
+            && let Some([low, high]) = walked.frame(None).picture.bounds()
+        {
+            // The image of a half lies beyond what the first frame shows.
+            plan.extent = [plan.extent[0].min(low), plan.extent[1].max(high)];
+        }
         Ok(plan)
     }
 }
