@@ -138,6 +138,19 @@ fn every_frame_of_an_animated_png_is_the_figure_of_its_step_and_that_of_a_gif_co
 }
 
 #[test]
+fn the_image_of_a_half_is_in_the_picture() {
+    let folder = tempfile::tempdir().unwrap();
+    let here = folder.path();
+    let disk = "version = 1\nsymmetry = \"y\"\n\
+                [[curve]]\nname = \"rim\"\nkind = \"circle\"\ncentre = [0, 0]\nradius = 1\n\
+                [[face]]\nname = \"f\"\nouter = [\"rim\"]\n[[metric]]\nkind = \"uniform\"\nh = 0.5\n";
+    std::fs::write(here.join("disk.toml"), disk).unwrap();
+    let case: &[&str] = &["disk.toml", "-q"];
+    let film = of_png(&made(&[&["animate", "--every", "20"], case, &SMALL], here, "a.apng"));
+    assert!(film.frames.last() == Some(&rendered(&[case, &SMALL], here)));
+}
+
+#[test]
 fn frames_by_quadrilaterals_and_by_events_are_those_of_the_run() {
     let folder = tempfile::tempdir().unwrap();
     let here = folder.path();
