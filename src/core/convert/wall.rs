@@ -16,6 +16,8 @@ const HEIGHTS: std::ops::RangeInclusive<f64> = 0.4..=1.7;
 /// Beyond the first row, stems end where a row is not this much longer than high: from there on a lean costs as much in
 /// the metric as it does in the plane.
 const LEAST_ASPECT: f64 = 1.5;
+/// So many nodes from a corner stems fan out: while the front forms it follows the metric there.
+const FANNED: usize = 2;
 
 /// A node of a wall.
 pub struct WallNode {
@@ -57,6 +59,20 @@ impl WallNode {
         let (l_before, l_after) = (before.length(), after.length());
         let tangent = after * (l_before / l_after) - before * (l_after / l_before);
         ((self.theta - PI).abs() <= CORNER).then(|| tangent.normalize().perp())
+    }
+
+    /// Whether one of so many nodes before or after it is a corner, or belongs to no wall.
+    fn is_near_corner(&self, mesh: &Mesh, source: &dyn MetricSource, nodes: usize) -> bool {
+        [0, 1].into_iter().any(|side| {
+            let mut beside = self.beside[side];
+            (0..nodes).any(|_| match WallNode::of(mesh, source, beside).filter(|wall| wall.normal().is_some()) {
+                Some(wall) => {
+                    beside = wall.beside[side];
+                    false
+                }
+                None => true,
+            })
+        })
     }
 }
 
@@ -106,7 +122,7 @@ pub fn onward(mesh: &Mesh, source: &dyn MetricSource, node: NodeId, most: u16) -
         }
     }
     let wall = WallNode::of(mesh, source, foot)?;
-    let normal = wall.normal()?;
+    let normal = wall.normal().filter(|_| !wall.is_near_corner(mesh, source, FANNED))?;
     let (mut distance, mut height) = (0.0, 0.0);
     for h in wall.rows.heights().take(row as usize + 1) {
         height = h;

@@ -21,7 +21,7 @@ const KEPT_QUALITY: f64 = 0.9;
 const FIRST_ROWS: u32 = 5;
 /// Where an element is of lower quality than this, the nodes at it of the first rows, and of those beyond, are smoothed
 /// like others.
-const POOR: [f64; 2] = [0.5, 0.6];
+const POOR: [f64; 2] = [0.55, 0.9];
 /// A node that would have to go farther than this, in its metric, belongs to another row or stem.
 const FARTHEST: f64 = 3.0;
 
