@@ -260,7 +260,7 @@ fn sides_of_a_gap_that_cannot_have_equal_numbers_are_told() {
     assert_eq!(low.abs_diff(high) % 2, 1);
     assert!(!made.report.spacing.narrow_gaps.unwrap().facing);
     let text = made.report.summary();
-    assert!(text.contains("1 narrow gap, down to 0.1 wide; equal numbers of segments on both sides are not"), "{text}");
+    assert!(text.contains("1 narrow gap, down to 0.1 wide; equal numbers of segments on both sides did not"), "{text}");
 }
 
 #[test]
