@@ -22,9 +22,10 @@ const DECISION: [f64; 2] = [60.0, 180.0];
 pub(super) fn aim(state: &State, moment: &Moment, size: DVec2, look: Option<Look>) -> (Camera, bool) {
     let bounds = scene::bounds(&moment.mesh).unwrap_or([DVec2::ZERO, DVec2::ONE]);
     let fitted = Camera::fit(bounds, size, MARGIN);
-    let ViewCamera { camera, mut is_fitted, .. } = state.view().plane;
+    let ViewCamera { camera, mut is_fitted, size: before } = state.view().plane;
     // A view that still shows the whole mesh goes on doing so when its size changes, and when a half gets its image.
-    let mut camera = camera.filter(|_| !is_fitted).unwrap_or(fitted);
+    let stays = |camera: &Camera| !is_fitted || (before == size && shows(camera, bounds, size));
+    let mut camera = camera.filter(stays).unwrap_or(fitted);
     match look {
         // A side is a view of space.
         None | Some(Look::From(_)) => {}
@@ -92,6 +93,15 @@ pub(super) fn extent_of(
     };
     let extent = places.iter().map(|p| p.distance(middle)).fold(0.0, f64::max);
     Some((middle, extent.max(f64::MIN_POSITIVE)))
+}
+
+/// Whether a view shows all of a box.
+fn shows(camera: &Camera, [low, high]: [DVec2; 2], size: DVec2) -> bool {
+    let corners = [low, DVec2::new(high.x, low.y), high, DVec2::new(low.x, high.y)];
+    corners.iter().all(|p| {
+        let at = camera.project(p.extend(0.0), size);
+        at.cmpge(DVec2::ZERO).all() && at.cmple(size).all()
+    })
 }
 
 /// Whether something lies in a view with room around it and is large enough to be seen.
