@@ -100,14 +100,9 @@ pub(super) fn from_domain(
     let on_line = |&(ends, curve): &([PointId; 2], u32)| Some((ends, lines.of_curve.get(curve as usize).copied()??));
     let sides = made.lines.iter().filter_map(on_line).collect();
     let mut names = Names::of_faces(faces).with_lines(lines.names, sides);
-    names.further.points = match (lines.points, &half) {
-        (Some(groups), _) => named_points(&groups, &made.hard),
-        (None, Some(half)) => symmetric::named_points(half, &case.points, &made.mesh, &made.hard),
-        (None, None) => {
-            let own = case.points.iter().map(|point| vec![Some(Named::new(&point.name))]);
-            named_points(&own.collect::<Vec<_>>(), &made.hard)
-        }
-    };
+    let own = case.points.iter().map(|point| vec![Some(Named::new(&point.name))]);
+    let hard = half.as_ref().map_or(made.hard.clone(), |half| symmetric::hard_points(half, &made.mesh, &made.hard));
+    names.further.points = named_points(&lines.points.unwrap_or_else(|| own.collect()), &hard);
     let mut repairs = Vec::new();
     Repair::RepeatedPoint.report(domain.merged_points, &mut repairs);
     Repair::JoinedEnd.report(domain.joined_ends, &mut repairs);

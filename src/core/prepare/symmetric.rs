@@ -7,7 +7,7 @@ use crate::core::fault::{Fault, FaultKind};
 use crate::core::geometry::{Axis, Domain, Half, Mirror, PointSpec};
 use crate::core::kernel::Metric2;
 use crate::core::kernel::decimal::{number, point_text};
-use crate::core::mesh::{Mesh, Named, PointId, Symmetry as Images};
+use crate::core::mesh::{Mesh, PointId, Symmetry as Images};
 use crate::core::metric::{MetricSource, Sizing};
 
 /// The largest relative difference of the squares of two sizes that are each other's images: 1 % of the sizes.
@@ -82,24 +82,16 @@ fn differ(a: &Metric2, b: &Metric2) -> bool {
     })
 }
 
-/// The groups of the hard points of a half, which have these numbers, and of their images.
-pub(super) fn named_points(
-    half: &Half,
-    points: &[PointSpec],
-    mesh: &Mesh,
-    hard: &[(u32, PointId)],
-) -> Vec<(Option<Named>, PointId)> {
+/// The hard points of a half and their images, by their numbers in the case.
+pub(super) fn hard_points(half: &Half, mesh: &Mesh, hard: &[(u32, PointId)]) -> Vec<(u32, PointId)> {
     let Some(symmetry) = mesh.symmetry() else { return Vec::new() };
     let images = mesh.image_points(symmetry);
-    let named = |number: usize, point| (number, (Some(Named::new(&points[number].name)), point));
     let both = hard.iter().flat_map(|&(number, point)| {
-        let [own, of_image] = half.points[number as usize];
+        let [own, of_image] = half.points[number as usize].map(|k| k as u32);
         let image = images[point.index()];
-        [Some(named(own, point)), (image != point).then(|| named(of_image, image))]
+        [Some((own, point)), (image != point).then_some((of_image, image))]
     });
-    let mut both: Vec<_> = both.flatten().collect();
-    both.sort_by_key(|(number, (_, point))| (*number, *point));
-    both.into_iter().map(|(_, named)| named).collect()
+    both.flatten().collect()
 }
 
 /// How the image of the mesh of a half is joined to it; `lines` are the sides on the curves of the half, `hard` its

@@ -153,7 +153,7 @@ impl Mesh {
         }
         let seams = self.seams(symmetry);
         let slots = self.image_slots(&seams);
-        let points = self.image_points(symmetry);
+        let points = self.points_of_images(symmetry, &seams);
         let nodes = self.nodes().filter(|n| slots.node[n.index()] != n.0).collect::<Vec<_>>();
         let elements = self.elements().collect::<Vec<_>>();
         let glued = self.nodes().filter(|n| slots.node[n.index()] == n.0);
@@ -263,7 +263,10 @@ impl Mesh {
     /// The output point of the images of the nodes of each point of a half: itself where sides on the line join the two
     /// halves, else a new one.
     pub(in crate::core) fn image_points(&self, symmetry: &Symmetry) -> Vec<PointId> {
-        let seams = self.seams(symmetry);
+        self.points_of_images(symmetry, &self.seams(symmetry))
+    }
+
+    fn points_of_images(&self, symmetry: &Symmetry, seams: &[Seams]) -> Vec<PointId> {
         let mut image: Vec<PointId> = (0..symmetry.points).map(|point| PointId(point + symmetry.points)).collect();
         for (seams, point) in self.nodes().filter_map(|n| Some((seams[n.index()], self.point(n)?))) {
             if seams.has(Joint::Glued) || seams.has(Joint::Shared) {
