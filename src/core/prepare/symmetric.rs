@@ -4,7 +4,7 @@ use glam::DVec2;
 
 use crate::core::case::Symmetry;
 use crate::core::fault::{Fault, FaultKind};
-use crate::core::geometry::{Axis, Domain, Half, Mirror, PointSpec};
+use crate::core::geometry::{Axis, Domain, Half, Mirror};
 use crate::core::kernel::Metric2;
 use crate::core::kernel::decimal::{number, point_text};
 use crate::core::mesh::{Mesh, PointId, Symmetry as Images};
