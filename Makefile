@@ -1,8 +1,11 @@
 # Every target sets up what it needs: on a fresh machine a Rust toolchain and make are enough.
-.PHONY: help run test check bench experiments corpus soak licenses
+.PHONY: help run web web-serve web-test test check bench experiments corpus soak licenses
 
 help:
 	@echo "make run          the window on example 1; without a display example 1 converted, with its pictures"
+	@echo "make web          the window for the browser, in out/web: pages for a server, and one that needs none"
+	@echo "make web-serve    the same, served on this machine"
+	@echo "make web-test     the same, tested in Chromium"
 	@echo "make test         all tests"
 	@echo "make check        formatting, clippy and rustdoc; warnings are errors"
 	@echo "make bench        timings"
@@ -16,6 +19,19 @@ run:
 	cargo build --locked --release
 	@tools/run
 
+web:
+	@tools/setup web
+	@tools/make-web
+
+web-serve: web
+	@tools/setup serve
+	@echo "http://127.0.0.1:8080 (end with Ctrl+C)"
+	@python3 -m http.server 8080 --bind 127.0.0.1 --directory out/web
+
+web-test: web
+	@tools/setup browser
+	QUADFRONT_NEEDS_BROWSER=1 cargo test --locked --no-default-features --features cli --test web
+
 # One build serves the tests, the examples and the end-to-end test; the library alone is compiled once more for its
 # bytes.
 test:
@@ -28,6 +44,7 @@ test:
 	done
 	tools/end-to-end target/debug/quadfront
 	cargo test --locked --no-default-features --test same_bytes
+	cargo test --locked --manifest-path tools/web/Cargo.toml --target-dir target/web/tool
 
 check:
 	@tools/setup build check
@@ -36,6 +53,8 @@ check:
 	cargo clippy --locked --no-default-features --features cli --all-targets -- -D warnings
 	cargo clippy --locked --no-default-features --all-targets -- -D warnings
 	RUSTDOCFLAGS="-D warnings" cargo doc --locked --no-deps --features uitest
+	cargo fmt --check --manifest-path tools/web/Cargo.toml
+	cargo clippy --locked --manifest-path tools/web/Cargo.toml --target-dir target/web/tool --all-targets -- -D warnings
 
 bench:
 	@tools/setup build
@@ -63,3 +82,5 @@ soak:
 licenses:
 	@tools/setup build licenses
 	PATH="$(CURDIR)/target/tools/bin:$$PATH" cargo deny --all-features check licenses bans sources
+	PATH="$(CURDIR)/target/tools/bin:$$PATH" cargo deny --manifest-path tools/web/Cargo.toml check --config deny.toml \
+		licenses bans sources

@@ -5,14 +5,12 @@
 #[path = "common/environment.rs"]
 mod environment;
 
-use std::sync::atomic::AtomicBool;
-
 use proptest::prelude::*;
 use quadfront::core::case::built_in;
 use quadfront::core::convert::{Converter, Event, EventKind, Phase};
 use quadfront::core::mesh::NodeId;
 use quadfront::core::prepare::Background;
-use quadfront::core::progress::Nobody;
+use quadfront::core::progress::{Cancel, Nobody};
 use quadfront::core::run::history::BUDGET;
 use quadfront::core::run::timeline::{LANES, Span, Tracked, count};
 use quadfront::core::run::{Appearance, Changes, Condition, Edit, EditKind, History, Run, Watched};
@@ -170,7 +168,7 @@ fn running_ahead_elsewhere_gives_the_same_history() {
     let (send, stretches) = std::sync::mpsc::channel();
     let worker = std::thread::spawn(move || {
         while !recorder.is_done() {
-            send.send(recorder.run(700, &AtomicBool::new(false))).unwrap();
+            send.send(recorder.run(700, &Cancel::default())).unwrap();
         }
         recorder
     });
@@ -187,10 +185,14 @@ fn running_ahead_elsewhere_gives_the_same_history() {
     history.seek(end / 2).unwrap();
     history.edit(parameter("c", "1.5")).unwrap();
     let mut recorder = history.lend().unwrap();
-    let stretch = recorder.run(100, &AtomicBool::new(false));
+    let stretch = recorder.run(100, &Cancel::default());
     history.edit(parameter("c", "1.7")).unwrap();
+    // Another one is lent before the first one is back, and is of use afterwards.
+    let mut next = history.lend().unwrap();
     assert!(!history.accept(stretch));
     history.take_back(recorder).unwrap();
+    assert!(history.accept(next.run(100, &Cancel::default())));
+    history.take_back(next).unwrap();
     let reached = history.seek(u64::MAX).unwrap();
     assert_eq!(bytes(history.state()), fresh(history.run(), &background, reached));
 }

@@ -57,6 +57,8 @@ pub(super) enum Command {
     Animate(AnimateArguments),
     /// Write the notes on the bookmarked steps of a run as one page (HTML), with a figure of each
     Notes(NotesArguments),
+    /// Write a case, a run or a lesson as one page (HTML) with the program inside, which opens in any browser
+    Page(PageArguments),
     /// List the lessons of the tour; check a lesson, one of your own too, and print it
     Lesson(LessonArguments),
     /// List the built-in cases
@@ -241,9 +243,9 @@ fn figures() -> impl TypedValueParser<Value = &'static Figure> {
 
 #[derive(Args)]
 pub(super) struct OpenArguments {
-    /// A built-in case, a case file or a run file (.toml), a mesh, a figure, which opens at the state it shows, or a
-    /// lesson (.md)
-    #[arg(value_name = "CASE|MESH|FIGURE|LESSON", default_value = "example1")]
+    /// A built-in case, a case file or a run file (.toml), a mesh, a figure, which opens at the state it shows, a
+    /// lesson (.md), or a link to a state, in quotes: '#case=example1&c=1.8&step=812&select=104-105'
+    #[arg(value_name = "CASE|MESH|FIGURE|LESSON|LINK", default_value = "example1")]
     pub input: String,
     #[command(flatten)]
     pub overrides: Overrides,
@@ -422,6 +424,21 @@ pub(super) struct NotesArguments {
     pub source: Source,
     #[command(flatten)]
     pub figure: FigureOptions,
+    /// Write the page (.html), or - for standard output
+    #[arg(short, long, value_name = "FILE")]
+    pub out: Target,
+}
+
+#[derive(Args)]
+pub(super) struct PageArguments {
+    #[command(flatten)]
+    pub source: Source,
+    /// The lesson of this name, where a case has it too
+    #[arg(long)]
+    pub lesson: bool,
+    /// The state at which the page opens: nq=100, step=812 or end; without it the first one, or that of a figure
+    #[arg(long, value_name = "STOP", value_parser = until)]
+    pub at: Option<Until>,
     /// Write the page (.html), or - for standard output
     #[arg(short, long, value_name = "FILE")]
     pub out: Target,

@@ -20,7 +20,7 @@ use crate::render::picture::Picture;
 use crate::render::vector::histogram::Histogram;
 use crate::render::vector::page::Page;
 use crate::render::vector::sheet::{self, Sheet};
-use crate::render::vector::{pdf, svg};
+use crate::render::vector::svg;
 
 /// A figure, ready to be written.
 pub(super) struct Figure {
@@ -90,7 +90,8 @@ impl Figure {
     pub fn bytes(&self, format: PictureFormat) -> Result<Vec<u8>, Fault> {
         match format {
             PictureFormat::Svg => Ok(self.svg().into_bytes()),
-            PictureFormat::Pdf => pdf::write(&self.page),
+            #[cfg(not(target_arch = "wasm32"))]
+            PictureFormat::Pdf => crate::render::vector::pdf::write(&self.page),
             #[cfg(feature = "window")]
             PictureFormat::Png => {
                 use crate::render::vector::png;

@@ -13,7 +13,7 @@ use crate::core::case::{Case, ImportOptions, MeshUse, built_in};
 use crate::core::case::{DomainSource, Taking};
 use crate::core::convert::Stop;
 use crate::core::fault::{Fault, FaultKind};
-use crate::core::formats::save::load;
+use crate::core::formats::save::{self, load};
 use crate::core::formats::{Format, format};
 use crate::core::kernel::spelling::nearest;
 use crate::core::progress::Watch;
@@ -150,7 +150,7 @@ pub(super) fn read(source: &Source, mesh: &ImportOptions) -> Result<Input, Fault
 #[cfg(feature = "window")]
 pub(super) fn check(input: &str, mesh: &ImportOptions, overrides: &Overrides) -> Result<(), Fault> {
     match run_of(Path::new(input), mesh, &Overrides::default()) {
-        Err(_) if mesh.lines().is_empty() && Path::new(input).is_file() => Ok(()),
+        Err(_) if mesh.lines().is_empty() && save::is_file(Path::new(input)) => Ok(()),
         Err(fault) => Err(fault),
         Ok(mut run) => overrides.apply(&mut run, "--set"),
     }
@@ -264,7 +264,7 @@ fn kind(name: &str, from: Option<InputFormat>) -> Result<Kind, Fault> {
         return Ok(Kind::BuiltIn);
     }
     let path = PathBuf::from(name);
-    if path.is_dir() {
+    if save::ON_DISK && path.is_dir() {
         return Err(Fault::new("This is a folder").at(name).remedy("Name a file in it"));
     }
     if let Some(format) = from {
@@ -285,7 +285,7 @@ fn kind(name: &str, from: Option<InputFormat>) -> Result<Kind, Fault> {
     }
     match Format::from_path(&path) {
         Ok(format) => Ok(Kind::File(path, InputFormat::Mesh(format))),
-        Err(_) if !path.exists() => {
+        Err(_) if !save::is_file(&path) => {
             let fault = Fault::new("Neither a built-in case nor a file has this name").at(name);
             Err(match nearest(name, built_in::all().map(|case| case.0)) {
                 Some(near) => {

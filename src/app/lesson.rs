@@ -9,6 +9,7 @@ use super::command_line::LessonArguments;
 use super::output::Target;
 use super::progress::Progress;
 use crate::core::fault::Fault;
+use crate::core::formats::save;
 use crate::core::kernel::spelling::nearest;
 use crate::core::lesson::{Block, Equation, Lesson, Piece, Scene, Shown, Things, built_in, page};
 use crate::core::question::Asked;
@@ -17,8 +18,9 @@ use crate::core::run::explain::plain;
 
 /// Lists the lessons of the tour, prints the template, checks a lesson and prints it, or opens it in the window.
 pub(super) fn lesson(arguments: &LessonArguments) -> Result<ExitCode, Fault> {
+    #[cfg(not(target_arch = "wasm32"))]
     if arguments.open {
-        return super::open_lesson(arguments.lesson.as_deref().unwrap_or(built_in::LESSONS[0].0));
+        return super::program::open_lesson(arguments.lesson.as_deref().unwrap_or(built_in::LESSONS[0].0));
     }
     let text = match &arguments.lesson {
         _ if arguments.template => built_in::TEMPLATE.to_owned(),
@@ -44,7 +46,7 @@ pub(super) fn found(name: &str) -> Result<Lesson, Fault> {
     if let Some(lesson) = built_in::named(name) {
         return lesson;
     }
-    if name.ends_with(".md") || Path::new(name).exists() {
+    if name.ends_with(".md") || save::is_file(Path::new(name)) {
         return Lesson::read(Path::new(name));
     }
     let fault = Fault::new("No lesson has this name").at(name);

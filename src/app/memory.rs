@@ -1,5 +1,5 @@
-//! The memory that the machine and the limits of the process leave, as Linux tells it in files; elsewhere nothing is
-//! known, and nothing is refused.
+//! The memory that the machine and the limits of the process leave, as Linux tells it in files, or that a page may
+//! have; elsewhere nothing is known, and nothing is refused.
 
 use std::fs;
 
@@ -55,6 +55,17 @@ struct Free {
     bound: Bound,
 }
 
+/// What WebAssembly can still address, of its 4 GiB; none elsewhere.
+#[cfg(target_arch = "wasm32")]
+fn page() -> Option<f64> {
+    Some((65_536.0 - core::arch::wasm32::memory_size(0) as f64) * 65_536.0)
+}
+
+#[cfg(not(target_arch = "wasm32"))]
+fn page() -> Option<f64> {
+    None
+}
+
 /// What bounds the memory of a process.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Bound {
@@ -62,6 +73,7 @@ enum Bound {
     AddressSpace,
     Data,
     Group,
+    Page,
 }
 
 impl Free {
@@ -79,11 +91,12 @@ impl Free {
                 .find_map(|line| line.strip_prefix(name)?.split_whitespace().next()?.parse::<f64>().ok());
             Some(soft? - kilobytes(&status?, used)?)
         };
-        let all: [(Option<f64>, Bound); 4] = [
+        let all: [(Option<f64>, Bound); 5] = [
             (machine(), Bound::Machine),
             (limit("Max address space", "VmSize:"), Bound::AddressSpace),
             (limit("Max data size", "VmData:"), Bound::Data),
             (group(read), Bound::Group),
+            (page(), Bound::Page),
         ];
         let known = all.into_iter().filter_map(|(bytes, bound)| Some(Free { bytes: bytes?, bound }));
         known.min_by(|a, b| a.bytes.total_cmp(&b.bytes))
@@ -120,6 +133,7 @@ impl Bound {
             Bound::AddressSpace => "are left to this process by its limit of address space (ulimit -v)",
             Bound::Data => "are left to this process by its limit of data (ulimit -d)",
             Bound::Group => "are left by the limit of its control group",
+            Bound::Page => "are left to a page of a browser",
         }
     }
 
@@ -129,6 +143,7 @@ impl Bound {
             Bound::AddressSpace => "raise the limit (ulimit -v)",
             Bound::Data => "raise the limit (ulimit -d)",
             Bound::Group => "raise the limit of the control group or container",
+            Bound::Page => "use quadfront on a machine",
         }
     }
 }

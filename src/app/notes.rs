@@ -205,7 +205,7 @@ fn harmless(url: CowStr<'_>) -> CowStr<'_> {
 }
 
 /// A text without characters that HTML takes for its own.
-fn escaped(text: &str) -> String {
+pub(super) fn escaped(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
     for c in text.chars() {
         match c {

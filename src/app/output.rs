@@ -33,11 +33,11 @@ impl Target {
     fn check(&self) -> Result<(), Fault> {
         let Target::File(path) = self else { return Ok(()) };
         let place = path.display().to_string();
-        if path.is_dir() {
+        if save::ON_DISK && path.is_dir() {
             return Err(Fault::new("This is a folder").at(place).remedy("Name a file in it"));
         }
         match path.parent() {
-            Some(folder) if !folder.as_os_str().is_empty() && !folder.is_dir() => {
+            Some(folder) if save::ON_DISK && !folder.as_os_str().is_empty() && !folder.is_dir() => {
                 Err(Fault::new(format!("The folder \"{}\" does not exist", folder.display()))
                     .at(place)
                     .remedy("Create it, or name another folder"))
@@ -183,6 +183,7 @@ pub(super) enum PictureFormat {
     /// Vectors.
     Svg,
     /// Vectors for print.
+    #[cfg(not(target_arch = "wasm32"))]
     Pdf,
     /// Pixels.
     #[cfg(feature = "window")]
@@ -193,6 +194,7 @@ impl PictureFormat {
     /// All formats.
     pub const ALL: &[PictureFormat] = &[
         PictureFormat::Svg,
+        #[cfg(not(target_arch = "wasm32"))]
         PictureFormat::Pdf,
         #[cfg(feature = "window")]
         PictureFormat::Png,
@@ -202,6 +204,7 @@ impl PictureFormat {
     pub fn extension(self) -> &'static str {
         match self {
             PictureFormat::Svg => "svg",
+            #[cfg(not(target_arch = "wasm32"))]
             PictureFormat::Pdf => "pdf",
             #[cfg(feature = "window")]
             PictureFormat::Png => "png",

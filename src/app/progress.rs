@@ -3,9 +3,9 @@
 use std::fmt::Write;
 use std::sync::LazyLock;
 use std::sync::atomic::AtomicBool;
-use std::time::Instant;
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
+use web_time::Instant;
 
 use super::memory::{self, Beside};
 use crate::core::fault::Fault;

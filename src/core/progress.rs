@@ -3,6 +3,7 @@
 
 use std::cell::RefCell;
 use std::sync::Arc;
+use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::fault::Fault;
@@ -136,6 +137,9 @@ impl Cancel {
 
     /// Whether cancellation was requested. A loop that ends by it gives no valid result: see [`Cancel::check`].
     pub fn is_asked(&self) -> bool {
+        if let Some(look) = ON_LOOK.get() {
+            look();
+        }
         self.0.as_ref().is_some_and(|asked| asked.load(Ordering::Relaxed))
     }
 
@@ -146,6 +150,16 @@ impl Cancel {
     pub fn check(&self) -> Result<(), Fault> {
         if self.is_asked() { Err(Fault::stopped()) } else { Ok(()) }
     }
+}
+
+/// See [`on_look`].
+static ON_LOOK: OnceLock<fn()> = OnceLock::new();
+
+/// Has `look` called whenever any work looks whether it is to end: where there is one thread only, the work can give
+/// way to others there. Only the first call counts.
+pub fn on_look(look: fn()) {
+    // A second one would be another way to do the same.
+    let _ = ON_LOOK.set(look);
 }
 
 /// Progress and cancellation while a file is read.

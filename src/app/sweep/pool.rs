@@ -3,7 +3,9 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
-use std::time::{Duration, Instant};
+use std::time::Duration;
+
+use web_time::Instant;
 
 use crate::app::memory::{self, Beside};
 use crate::app::work;
@@ -48,8 +50,8 @@ impl Watch for Worker {
 }
 
 /// Converts the cells that a sweep of a run does not have yet, on so many threads. Calls `hear` from this thread with
-/// the cells that were finished since the last call, and at least every 20 milliseconds. Returns as soon as `hear`
-/// returns false, without the cells in work; their threads end by themselves.
+/// the cells that were finished since the last call, and at least every 20 milliseconds, or after each cell where there
+/// are no threads. Returns as soon as `hear` returns false, without the cells in work; their threads end by themselves.
 pub(in crate::app) fn convert(
     run: &Run,
     sweep: &Sweep,
@@ -69,6 +71,9 @@ pub(in crate::app) fn convert(
         })
         .collect();
     drop(sender);
+    if threads.is_empty() {
+        return work.convert_here(hear);
+    }
     loop {
         let goes_on = match receiver.recv_timeout(PATIENCE) {
             Ok(first) => hear(std::iter::once(first).chain(receiver.try_iter()).collect()),
@@ -91,6 +96,16 @@ impl Work {
         while let Some(&cell) = self.missing.get(self.next.fetch_add(1, Ordering::Relaxed)) {
             let Some(done) = cell_of(&self.sweep.run_of(cell, &self.run), self.worker()) else { return };
             if sender.send((cell, done)).is_err() {
+                return;
+            }
+        }
+    }
+
+    /// Converts the cells one after the other, where there are no threads.
+    fn convert_here(&self, hear: &mut dyn FnMut(Vec<(usize, Cell)>) -> bool) {
+        for &cell in &self.missing {
+            let done = cell_of(&self.sweep.run_of(cell, &self.run), self.worker());
+            if !hear(done.map(|done| (cell, done)).into_iter().collect()) {
                 return;
             }
         }

@@ -2,10 +2,11 @@
 
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use eframe::egui::{self, Context, Frame, Key, Panel, Popup, RawInput, Ui, ViewportCommand};
 use eframe::{CreationContext, wgpu};
+use web_time::Instant;
 
 use super::command::{Command, keys_in, keys_of_study};
 use super::figures::carried;
@@ -20,6 +21,8 @@ use super::settings::Settings;
 use super::state::State;
 use super::theme;
 use super::viewport::Views;
+#[cfg(target_arch = "wasm32")]
+use super::web;
 
 /// How long after a change the settings are written.
 const SETTLED: Duration = Duration::from_millis(1500);
@@ -136,8 +139,21 @@ impl App {
     /// Does what keys and files that are dropped on the window ask for.
     fn input(&mut self, context: &Context) {
         let mut commands = self.keys(context);
-        let dropped = context.input(|input| input.raw.dropped_files.first().map(|file| file.path().to_path_buf()));
-        commands.extend(dropped.map(|path| Command::Open(Source::of_file(path))));
+        let dropped = context.input(|input| input.raw.dropped_files.clone());
+        #[cfg(not(target_arch = "wasm32"))]
+        commands.extend(dropped.first().map(|file| Command::Open(Source::of_file(file.path().to_path_buf()))));
+        #[cfg(target_arch = "wasm32")]
+        {
+            if !dropped.is_empty() {
+                web::open_dropped(dropped, context);
+            }
+            for asked in web::asked() {
+                match asked {
+                    Ok(command) => commands.push(command),
+                    Err(fault) => self.state.complain(&fault),
+                }
+            }
+        }
         commands.into_iter().for_each(|command| self.state.apply(command));
     }
 
@@ -210,7 +226,7 @@ impl App {
         }
         context.request_repaint();
         if let Some(render) = frame.wgpu_render_state() {
-            // A frame is done when the graphics card is.
+            // A frame is done when the graphics card is; a browser does not tell.
             let _ = render.device.poll(wgpu::PollType::wait_indefinitely());
         }
         self.state.measure_on();
@@ -327,6 +343,9 @@ impl eframe::App for App {
         self.state.hear_import(context.theme() == egui::Theme::Dark);
         self.hear(&context);
         self.screenshots(&context);
+        if let Some(text) = &self.state.frame().copied {
+            context.copy_text(text.clone());
+        }
         if self.show(ui) {
             context.request_repaint();
         }
@@ -339,10 +358,17 @@ impl eframe::App for App {
             Some(opened) => format!("{} – quadfront", opened.run.case.name),
             None => "quadfront".to_owned(),
         };
+        #[cfg(target_arch = "wasm32")]
+        web::tell(&self.state, &title);
         if self.title != title {
             self.title.clone_from(&title);
             context.send_viewport_cmd(ViewportCommand::Title(title));
         }
+    }
+
+    #[cfg(target_arch = "wasm32")]
+    fn as_any_mut(&mut self) -> Option<&mut dyn std::any::Any> {
+        Some(self)
     }
 
     fn raw_input_hook(&mut self, context: &Context, input: &mut RawInput) {

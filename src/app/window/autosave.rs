@@ -1,17 +1,19 @@
 //! Autosaves the run: each window has a file of its own in the user's state folder, which is removed once nothing is
 //! unsaved. After a crash, the next start offers to recover the run.
 //!
-//! A window holds a lock beside its file as long as it is open; the system releases it however the window ends. So two
-//! windows never take each other's runs, and a run whose lock is free was abandoned.
+//! A window holds its file as long as it is open, and releases it however it ends. So two windows never take each
+//! other's runs, and a run that nobody holds was abandoned.
 
 mod marks;
 mod slot;
 
+use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
-use std::thread::JoinHandle;
-use std::time::{Duration, Instant};
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::time::Duration;
+
+use web_time::Instant;
 
 pub use marks::Marks;
 pub use slot::{Offer, folder};
@@ -21,6 +23,7 @@ use super::files::work;
 use super::import::ImportOptions;
 use super::session::{Opened, Source, Wake};
 use super::state::{Breakpoint, Watchpoint};
+use crate::app::tasks::{self, Ended, Post, Rest, Serve};
 use crate::core::fault::Fault;
 use crate::core::record::Keeper;
 use crate::core::run::{Bookmark, Camera, Edit, Run};
@@ -35,31 +38,24 @@ enum Ask {
     Forget,
 }
 
-/// The thread that writes, so that the window does not wait for a disk.
+/// What writes, so that the window does not wait for a disk.
 struct Saver {
-    ask: Option<Sender<Ask>>,
+    ask: Option<Post<Ask>>,
     told: Receiver<Fault>,
-    thread: Option<JoinHandle<()>>,
+    ended: Option<Ended>,
 }
 
 impl Saver {
     fn new(folder: PathBuf, slot: Option<RunSlot>, wake: Wake) -> Saver {
-        let (ask, asked) = channel();
         let (tell, told) = channel();
-        let thread = std::thread::spawn(move || {
-            let mut work = Work { folder, slot, keeper: None, pending: None, complained: false };
-            work.serve(&asked, &|fault| {
-                // Nobody listens while the window is being closed.
-                let _ = tell.send(fault);
-                wake();
-            });
-        });
-        Saver { ask: Some(ask), told, thread: Some(thread) }
+        let work = Work { folder, slot, keeper: None, pending: None, complained: false, tell, wake };
+        let (ask, ended) = tasks::serve(move |_| Some(work));
+        Saver { ask: Some(ask), told, ended: Some(ended) }
     }
 
     fn ask(&self, ask: Ask) {
-        if let Some(sender) = &self.ask {
-            let _ = sender.send(ask);
+        if let Some(post) = &self.ask {
+            post.send(ask);
         }
     }
 }
@@ -68,8 +64,8 @@ impl Drop for Saver {
     fn drop(&mut self) {
         self.ask = None;
         // The last request is on the disk before the window is gone.
-        if let Some(thread) = self.thread.take() {
-            let _ = thread.join();
+        if let Some(ended) = self.ended.take() {
+            ended.wait();
         }
     }
 }
@@ -78,45 +74,55 @@ struct Work {
     folder: PathBuf,
     slot: Option<RunSlot>,
     keeper: Option<Keeper>,
-    /// The run that could not be written.
-    pending: Option<Box<(Run, Marks)>>,
+    /// The run that could not be written, and when that was tried last.
+    pending: Option<(Instant, Box<(Run, Marks)>)>,
     complained: bool,
+    tell: Sender<Fault>,
+    wake: Wake,
+}
+
+impl Serve<Ask> for Work {
+    fn hear(&mut self, first: Ask, later: &Receiver<Ask>) -> ControlFlow<()> {
+        // Of several requests only the last one counts.
+        match later.try_iter().last().unwrap_or(first) {
+            Ask::Forget => {
+                (self.keeper, self.pending) = (None, None);
+                if let Some(slot) = self.slot.take() {
+                    slot.remove();
+                }
+            }
+            Ask::Keep(run) => self.try_to_keep(run),
+        }
+        ControlFlow::Continue(())
+    }
+
+    /// Tries again what could not be written.
+    fn rest(&mut self) -> Rest {
+        match self.pending.as_ref().map(|pending| pending.0.elapsed()) {
+            None => return Rest::Asleep,
+            Some(since) if since < AGAIN => return Rest::For(AGAIN - since),
+            Some(_) => {}
+        }
+        if let Some((_, run)) = self.pending.take() {
+            self.try_to_keep(run);
+        }
+        Rest::Busy
+    }
 }
 
 impl Work {
-    fn serve(&mut self, asked: &Receiver<Ask>, tell: &dyn Fn(Fault)) {
-        loop {
-            let first = match &self.pending {
-                Some(_) => asked.recv_timeout(AGAIN),
-                None => asked.recv().map_err(|_| RecvTimeoutError::Disconnected),
-            };
-            let ask = match first {
-                // Of several requests only the last one counts.
-                Ok(first) => asked.try_iter().last().unwrap_or(first),
-                Err(RecvTimeoutError::Timeout) => match self.pending.take() {
-                    Some(run) => Ask::Keep(run),
-                    None => continue,
-                },
-                Err(RecvTimeoutError::Disconnected) => return,
-            };
-            match ask {
-                Ask::Forget => {
-                    (self.keeper, self.pending) = (None, None);
-                    if let Some(slot) = self.slot.take() {
-                        slot.remove();
-                    }
-                }
-                Ask::Keep(run) => match self.keep(&run) {
-                    Ok(()) => self.complained = false,
-                    Err(fault) => {
-                        if !std::mem::replace(&mut self.complained, true) {
-                            tell(fault);
-                        }
-                        self.pending = Some(run);
-                    }
-                },
-            }
+    fn try_to_keep(&mut self, run: Box<(Run, Marks)>) {
+        self.pending = None;
+        let Err(fault) = self.keep(&run) else {
+            self.complained = false;
+            return;
+        };
+        if !std::mem::replace(&mut self.complained, true) {
+            // Nobody listens while the window is being closed.
+            let _ = self.tell.send(fault);
+            (self.wake)();
         }
+        self.pending = Some((Instant::now(), run));
     }
 
     fn keep(&mut self, (run, marks): &(Run, Marks)) -> Result<(), Fault> {
@@ -300,7 +306,7 @@ impl Autosave {
     }
 }
 
-/// Searches for abandoned runs on a thread of its own.
+/// Searches for abandoned runs beside the window.
 fn scan(folder: &Path, wake: &Wake) -> Receiver<Vec<Offer>> {
     let folder = folder.to_path_buf();
     work(wake.clone(), move || left_behind(&folder))

@@ -179,6 +179,12 @@ pub enum Command {
     OpenKept,
     /// Discard the autosaved run that is offered.
     DiscardKept,
+    /// Open the state that a link names.
+    OpenLink(String),
+    /// Copy a link that names this state, with what is selected and seen.
+    CopyLink,
+    /// Save what is shown as a page with the program inside.
+    SavePage,
     /// Save the run: the case with all changes.
     SaveRun,
     /// Ask where to save the current mesh.
@@ -278,6 +284,8 @@ impl Command {
                 | Command::ToLargestLoss
                 | Command::Bookmark
                 | Command::NoteHere
+                | Command::CopyLink
+                | Command::SavePage
                 | Command::Export
                 | Command::Pair(PairCommand::Fork | PairCommand::ForkWith(_))
         )
@@ -331,6 +339,7 @@ impl Command {
                 | Command::ToggleTheme
                 | Command::Open(_)
                 | Command::OpenWith(..)
+                | Command::OpenLink(_)
                 | Command::OpenDialog
                 | Command::OpenPath
                 | Command::OpenKept

@@ -47,12 +47,20 @@ worded! {
 }
 
 impl Formats {
+    /// Those that this program makes: in a browser none for print.
+    pub fn made() -> impl Iterator<Item = Formats> {
+        Formats::ALL.into_iter().filter(|formats| !formats.files().is_empty())
+    }
+
     /// The formats of its files.
     fn files(self) -> &'static [PictureFormat] {
         match self {
             Formats::Svg => &[PictureFormat::Svg],
             Formats::Png => &[PictureFormat::Png],
+            #[cfg(not(target_arch = "wasm32"))]
             Formats::Pdf => &[PictureFormat::Pdf],
+            #[cfg(target_arch = "wasm32")]
+            Formats::Pdf => &[],
             Formats::Both => &[PictureFormat::Svg, PictureFormat::Png],
         }
     }
@@ -363,8 +371,8 @@ pub fn carried(state: &State) -> Option<String> {
     run_file::embedded(&run).ok()
 }
 
-/// How a figure names the current state.
-fn shown(moment: &Moment) -> ShownState {
+/// How files name the current state.
+pub fn shown(moment: &Moment) -> ShownState {
     let state = fingerprint(&moment.mesh, &moment.phase);
     ShownState { step: moment.step, at: Some(Stop::Step(moment.step)), state }
 }

@@ -1,28 +1,32 @@
 //! Files: names and dialogs to open them, a watcher of the file that is open, and pictures of the window.
 
+#[cfg(not(target_arch = "wasm32"))]
+mod dialog;
+#[cfg(target_arch = "wasm32")]
+#[path = "files/web_dialog.rs"]
+mod dialog;
+
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use eframe::egui::ColorImage;
 
 use super::import::ImportOptions;
 use super::session::{Source, Wake};
 use crate::app::command_line::Overrides;
-use crate::app::input;
+use crate::app::{input, tasks};
 use crate::core::case::built_in;
 use crate::core::fault::Fault;
 use crate::core::formats::{Format, save};
 use crate::core::record::figure::{self, KEYWORD};
 
+pub use dialog::Dialog;
+
 /// How often the watcher looks at its file.
 const LOOK: Duration = Duration::from_millis(700);
-/// A dialog that does not answer for this long is given up.
-const PATIENCE: Duration = Duration::from_secs(120);
-/// An answer that comes sooner does not come from a person.
-const HASTE: Duration = Duration::from_millis(250);
 
 impl Source {
     /// The source that a name stands for: a built-in case, or else a file, which may be a lesson.
@@ -48,17 +52,18 @@ impl Source {
         match self {
             Source::BuiltIn(name) | Source::Lesson(name) => name.clone(),
             Source::File(path) | Source::Mesh(path, _) => path.display().to_string(),
+            Source::Linked(_) => "the run of a link".to_owned(),
         }
     }
 }
 
-/// A file that a thread writes: what to tell the user when it is done, or what went wrong.
+/// A file that is being written: what to tell the user when it is done, or what went wrong.
 pub type Writing = Receiver<Result<String, Fault>>;
 
-/// Does some work on a thread of its own. The thread calls `wake` when it has answered.
+/// Does some work beside the window. It calls `wake` when it has answered.
 pub fn work<T: Send + 'static>(wake: Wake, work: impl FnOnce() -> T + Send + 'static) -> Receiver<T> {
     let (tell, told) = channel();
-    std::thread::spawn(move || {
+    tasks::work(move || {
         // Nobody listens once the window has been closed or has given the work up.
         let _ = tell.send(work());
         wake();
@@ -85,10 +90,15 @@ fn extensions() -> Vec<&'static str> {
     ["toml", "md"].into_iter().chain(figure::EXTENSIONS).chain(meshes).collect()
 }
 
-/// The system's file dialog, on a thread of its own: it may hang if the desktop has no portal.
-pub struct Dialog {
-    answer: Receiver<Option<PathBuf>>,
-    since: Instant,
+/// Of files that were given together the one to open: a case, or else the first that can be opened by itself.
+#[cfg(any(test, target_arch = "wasm32"))]
+pub fn main_of(given: &[PathBuf]) -> Option<&PathBuf> {
+    let has = |path: &PathBuf, known: &[&str]| {
+        path.extension().is_some_and(|own| known.iter().any(|one| own.eq_ignore_ascii_case(one)))
+    };
+    let known = extensions();
+    let first = |known: &[&str]| given.iter().find(|path| has(path, known));
+    first(&["toml", "md"]).or_else(|| first(&known)).or(given.first())
 }
 
 /// The answer of a dialog.
@@ -103,42 +113,11 @@ pub enum Answer {
     Missing,
 }
 
-impl Dialog {
-    /// Opens the dialog; `wake` is called when it has answered.
-    pub fn open(wake: Wake) -> Dialog {
-        let answer = work(wake, || {
-            rfd::FileDialog::new()
-                .set_title("Open a case, a mesh or a figure")
-                .add_filter("Cases, meshes, figures", &extensions())
-                .pick_file()
-        });
-        Dialog { answer, since: Instant::now() }
-    }
-
-    /// The dialog for a folder.
-    pub fn choose_folder(wake: Wake) -> Dialog {
-        let answer = work(wake, || rfd::FileDialog::new().set_title("The folder of figures").pick_folder());
-        Dialog { answer, since: Instant::now() }
-    }
-
-    /// Its answer, if there is one.
-    pub fn answer(&self) -> Answer {
-        match self.answer.try_recv() {
-            Ok(Some(path)) => Answer::File(path),
-            Ok(None) if self.since.elapsed() < HASTE => Answer::Missing,
-            Ok(None) => Answer::Nothing,
-            Err(TryRecvError::Disconnected) => Answer::Missing,
-            Err(TryRecvError::Empty) if self.since.elapsed() > PATIENCE => Answer::Missing,
-            Err(TryRecvError::Empty) => Answer::Waiting,
-        }
-    }
-}
-
 /// A path in the working folder that is free: `stem.extension`, `stem-2.extension`, ...
 pub fn free_path(stem: &str, extension: &str) -> PathBuf {
     let mut path = PathBuf::from(format!("{stem}.{extension}"));
     let mut number = 1;
-    while path.exists() {
+    while save::is_file(&path) {
         number += 1;
         path = PathBuf::from(format!("{stem}-{number}.{extension}"));
     }
@@ -223,5 +202,18 @@ mod tests {
         assert_eq!(Source::named("example1"), Source::BuiltIn("example1".to_owned()));
         assert_eq!(Source::named("figure-14"), Source::BuiltIn("figure-14".to_owned()));
         assert_eq!(Source::named("plate.toml"), Source::File(PathBuf::from("plate.toml")));
+    }
+
+    #[test]
+    fn of_files_given_together_a_case_is_opened_or_what_can_be_by_itself() {
+        let main = |names: &[&str]| {
+            let given: Vec<PathBuf> = names.iter().map(PathBuf::from).collect();
+            main_of(&given).map(|path| path.display().to_string())
+        };
+        assert_eq!(main(&["a.sol", "a.mesh"]).as_deref(), Some("a.mesh"));
+        assert_eq!(main(&["part.OBJ", "case.toml"]).as_deref(), Some("case.toml"));
+        assert_eq!(main(&["plate.bin", "plate.gltf"]).as_deref(), Some("plate.gltf"));
+        assert_eq!(main(&["notes.txt"]).as_deref(), Some("notes.txt"));
+        assert_eq!(main(&[]), None);
     }
 }

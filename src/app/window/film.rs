@@ -1,8 +1,10 @@
-//! The film of the window: of the run that is open, as the panel for figures says, on a thread of its own.
+//! The film of the window: of the run that is open, as the panel for figures says, made beside the window.
 
 use std::path::PathBuf;
 use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel};
-use std::time::{Duration, Instant};
+use std::time::Duration;
+
+use web_time::Instant;
 
 use super::figures;
 use super::files::free_path;
@@ -12,6 +14,7 @@ use crate::app::film::{self, FilmOptions};
 use crate::app::memory::{self, Beside};
 use crate::app::output::Target;
 use crate::app::progress;
+use crate::app::tasks;
 use crate::core::fault::Fault;
 use crate::core::kernel::number::grouped;
 use crate::core::progress::{Cancel, Need, Stage, Watch};
@@ -125,7 +128,7 @@ impl FilmWork {
             Target::File(path.clone()),
             Teller { tell: tell.clone(), wake: wake.clone(), cancel: cancel.clone(), last: None },
         );
-        std::thread::spawn(move || {
+        tasks::work(move || {
             let done = film::make(&run, &film, &figure, &target, &mut teller);
             // Nobody listens once it has been stopped.
             let _ = tell.send(News::Done(done.map(|made| made.text())));
@@ -148,7 +151,7 @@ impl FilmWork {
         }
     }
 
-    /// Takes in what its thread reports. Returns the message when it is done, or why it failed.
+    /// Takes in what it reports. Returns the message when it is done, or why it failed.
     pub fn hear(&mut self) -> Option<Result<String, Fault>> {
         loop {
             match self.news.as_ref()?.try_recv() {

@@ -1,11 +1,14 @@
-//! The lists of elements and nodes: measured, filtered and sorted on threads of their own, for the panels that are in
+//! The lists of elements and nodes: measured, filtered and sorted beside the window, for the panels that are in
 //! sight. A table follows what changes, so that a step costs little even where a mesh is large.
 
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
-use std::time::{Duration, Instant};
+use std::time::Duration;
+
+use web_time::Instant;
 
 use super::session::Wake;
+use crate::app::tasks;
 use crate::core::kernel::worded::worded;
 use crate::core::mesh::Mesh;
 use crate::core::run::copies::Since;
@@ -32,7 +35,7 @@ pub struct Shown {
     pub took: Duration,
 }
 
-/// What a thread is to do with a table.
+/// What is to be done with a table.
 struct Work {
     mesh: Arc<Mesh>,
     changes: Changes,
@@ -62,7 +65,7 @@ impl<R: Row> Default for Table<R> {
     }
 }
 
-/// What a thread has done.
+/// What has been done.
 struct Done<R> {
     table: Table<R>,
     shown: Shown,
@@ -73,7 +76,7 @@ struct Done<R> {
 pub struct Lister<R> {
     /// What has changed since the table followed last.
     since: Since,
-    /// The table, while no thread works with it.
+    /// The table, while nothing is done with it.
     table: Option<Table<R>>,
     under_way: Option<Receiver<Done<R>>>,
     shown: Option<Arc<Shown>>,
@@ -88,7 +91,7 @@ impl<R> Default for Lister<R> {
 }
 
 impl<R: Row + Send + 'static> Lister<R> {
-    /// What is shown: of the current state and by the last query, or of those before while a thread is at work.
+    /// What is shown: of the current state and by the last query, or of those before while work is under way.
     pub fn shown(&self) -> Option<&Arc<Shown>> {
         self.shown.as_ref()
     }
@@ -107,7 +110,7 @@ impl<R: Row + Send + 'static> Lister<R> {
         let mut table = self.table.take().unwrap_or_default();
         let (tell, told) = channel();
         self.under_way = Some(told);
-        std::thread::spawn(move || {
+        tasks::work(move || {
             let begin = Instant::now();
             let Work { mesh, changes, recorded, query, as_text } = work;
             let Table { rows, changes: last } = &mut table;
@@ -136,7 +139,7 @@ impl<R: Row + Send + 'static> Lister<R> {
                 }
             }
             Err(TryRecvError::Empty) => {}
-            // A thread that has failed took its table along: the next one measures everything.
+            // Work that has failed took its table along: the next one measures everything.
             Err(TryRecvError::Disconnected) => (self.since, self.under_way) = (Since::everything(), None),
         }
     }

@@ -1,6 +1,8 @@
 //! How long states and frames take on this machine: shown in the status line, or measured by stepping.
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
+
+use web_time::Instant;
 
 use super::session::Goal;
 

@@ -11,6 +11,7 @@ use crate::app::output::MeshTarget;
 use crate::app::work;
 use crate::core::convert::Phase;
 use crate::core::fault::Fault;
+use crate::core::formats::save;
 
 /// A path for the current mesh that is free.
 pub fn suggested_path(state: &State) -> String {
@@ -29,7 +30,7 @@ pub fn begin(state: &State, path: &str, wake: Wake) -> Result<Option<Writing>, F
         return Ok(None);
     };
     let path = PathBuf::from(path.trim());
-    if path.exists() {
+    if save::is_file(&path) {
         let fault = Fault::new("There is a file of this name").at(path.display().to_string());
         return Err(fault.remedy("Choose another name: no file is overwritten"));
     }

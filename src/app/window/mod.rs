@@ -22,6 +22,7 @@ mod graphics;
 mod autosave;
 mod figures;
 mod mesh_out;
+mod page_out;
 mod lists;
 mod sweep;
 mod study;
@@ -32,14 +33,10 @@ mod layout;
 mod panels;
 mod presses;
 mod app;
-
-use std::process::ExitCode;
-use std::time::Instant;
-
-use eframe::egui::{Vec2, ViewportBuilder};
-
-use crate::core::fault::Fault;
-use crate::core::question::Series;
+#[cfg(not(target_arch = "wasm32"))]
+mod opening;
+#[cfg(target_arch = "wasm32")]
+pub mod web;
 
 pub use crate::app::command_line::Overrides;
 pub use app::App;
@@ -47,6 +44,8 @@ pub use command::{Command, Rules};
 pub use graphics::Lost;
 pub use import::Gesture;
 pub use lists::ListKind;
+#[cfg(not(target_arch = "wasm32"))]
+pub use opening::open;
 pub use pair::{Arrangement, LinkedBy, PairCommand, Which};
 pub use presentation::{Chrome, PresentationCommand, PresentationForm};
 pub use session::{Direction, Goal, Source};
@@ -54,62 +53,3 @@ pub use state::SurfaceView;
 pub use study::StudyCommand;
 pub use sweep::{SweepCommand, SweepForm};
 pub use view_layer::ViewLayer;
-
-/// The largest window in points: egui's textures end there.
-const LARGEST: f32 = 8192.0;
-
-/// Opens the window on what is named, with its parameters changed, asks the questions of a series there, and returns
-/// when it is closed.
-///
-/// # Errors
-/// Where there is no display or no graphics adapter, or where the graphics device is lost.
-pub fn open(source: Source, overrides: Overrides, predict: Option<Series>) -> Result<ExitCode, Fault> {
-    let started = Instant::now();
-    let path = settings::path();
-    let kept = path.as_deref().and_then(|path| settings::Settings::read(path).ok().flatten());
-    let size = kept.and_then(|kept| kept.window).map_or(Vec2::new(1600.0, 1000.0), Vec2::from);
-    let least = Vec2::new(720.0, 480.0);
-    let options = eframe::NativeOptions {
-        viewport: ViewportBuilder::default()
-            .with_title("quadfront")
-            .with_app_id("quadfront")
-            .with_inner_size(size.clamp(least, Vec2::splat(LARGEST)))
-            .with_min_inner_size(least)
-            .with_max_inner_size(Vec2::splat(LARGEST))
-            .with_drag_and_drop(true),
-        renderer: eframe::Renderer::Wgpu,
-        wgpu_options: graphics::options(),
-        persist_window: false,
-        // Large even colours need none, and it is paid for at every pixel.
-        dithering: false,
-        ..eframe::NativeOptions::default()
-    };
-    let lost = graphics::Lost::default();
-    let watch = lost.clone();
-    let shown = eframe::run_native(
-        "quadfront",
-        options,
-        Box::new(move |cc| {
-            let mut app = App::kept(cc, None, path, watch).keeping(autosave::folder());
-            app.apply(Command::OpenWith(source, Box::new(overrides)));
-            if let Some(series) = predict {
-                app.apply(Command::Study(StudyCommand::PredictSeries(series)));
-            }
-            Ok(Box::new(app.cleared().started(started)))
-        }),
-    );
-    shown.map_err(|error| {
-        let what = match &error {
-            eframe::Error::WinitEventLoop(_) | eframe::Error::Winit(_) => "there is no display".to_owned(),
-            eframe::Error::Wgpu(_) => {
-                format!("there is no graphics adapter ({})", error.to_string().trim_end_matches('.'))
-            }
-            _ => error.to_string().trim_end_matches('.').to_owned(),
-        };
-        Fault::new(format!("The window cannot be opened: {what}")).remedy(
-            "It needs a display and a graphics driver; on Debian: apt-get install libvulkan1 mesa-vulkan-drivers. \
-             quadfront convert and quadfront render work without",
-        )
-    })?;
-    lost.fault().map_or(Ok(ExitCode::SUCCESS), Err)
-}

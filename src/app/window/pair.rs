@@ -1,5 +1,6 @@
-//! Two runs side by side: what can be done with them, and the thread that compares them.
+//! Two runs side by side: what can be done with them, and what compares them.
 
+use std::ops::ControlFlow;
 use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel};
 
 use super::command::{Command, Rules};
@@ -8,6 +9,7 @@ use super::state::Progress;
 use crate::app::command_line::Overrides;
 use crate::app::memory::{self, Beside};
 use crate::app::progress::StageTimes;
+use crate::app::tasks::{self, Post, Serve};
 use crate::core::fault::Fault;
 use crate::core::kernel::worded::worded;
 use crate::core::progress::{Cancel, Need, Stage, Watch};
@@ -134,7 +136,7 @@ impl PairCommand {
     }
 }
 
-/// What the thread that compares two runs reports.
+/// What the comparison of two runs reports.
 pub enum CompareNews {
     Progress(Progress),
     /// The first difference, or that the runs never differ.
@@ -151,10 +153,10 @@ pub enum CompareNews {
 /// The memory of each of the histories that answer questions about differences, in bytes.
 const KEPT: usize = BUDGET / 8;
 
-/// A thread that compares two runs and then tells of their differences; it stops when this is dropped.
+/// Compares two runs and then tells of their differences, until it is dropped.
 pub struct Comparing {
     told: Receiver<CompareNews>,
-    ask: Sender<usize>,
+    ask: Post<usize>,
     cancel: Cancel,
 }
 
@@ -162,18 +164,13 @@ impl Comparing {
     /// Begins to compare two runs; `wake` is called when there is something to hear.
     pub fn begin(runs: [Run; 2], wake: Wake) -> Comparing {
         let (tell, told) = channel();
-        let (ask, asked) = channel();
         let cancel = Cancel::new();
-        let stop = cancel.clone();
-        std::thread::spawn(move || {
-            let said = |news: CompareNews| {
-                // Nobody listens once another comparison has begun.
-                let _ = tell.send(news);
-                wake();
-            };
-            match compare(runs, &said, &stop, &asked) {
-                Err(fault) if !fault.is_stop() => said(CompareNews::Fault(fault)),
-                _ => {}
+        let voice = Voice { tell, wake, cancel: cancel.clone() };
+        let (ask, _) = tasks::serve(move |_| match compare(runs, &voice) {
+            Ok((histories, differences)) => Some(Differing { histories, differences, voice }),
+            Err(fault) => {
+                voice.complain(fault);
+                None
             }
         });
         Comparing { told, ask, cancel }
@@ -181,8 +178,7 @@ impl Comparing {
 
     /// Asks what both did at a difference, by its place in the list.
     pub fn ask(&self, difference: usize) {
-        // Where the thread has ended with a fault, that has been told.
-        let _ = self.ask.send(difference);
+        self.ask.send(difference);
     }
 
     /// The next report, if there is one.
@@ -197,51 +193,94 @@ impl Drop for Comparing {
     }
 }
 
-/// Compares two runs, and then tells what is asked about their differences.
-fn compare([a, b]: [Run; 2], said: &dyn Fn(CompareNews), stop: &Cancel, asked: &Receiver<usize>) -> Result<(), Fault> {
-    let new_watch = || CompareWatch { say: said, cancel: stop.clone(), times: StageTimes::default() };
-    let mut watch = new_watch();
+/// Reports to the window.
+struct Voice {
+    tell: Sender<CompareNews>,
+    wake: Wake,
+    cancel: Cancel,
+}
+
+impl Voice {
+    fn say(&self, news: CompareNews) {
+        // Nobody listens once another comparison has begun.
+        let _ = self.tell.send(news);
+        (self.wake)();
+    }
+
+    fn complain(&self, fault: Fault) {
+        if !fault.is_stop() {
+            self.say(CompareNews::Fault(fault));
+        }
+    }
+
+    fn watch(&self) -> CompareWatch<'_> {
+        CompareWatch { voice: self, times: StageTimes::default() }
+    }
+}
+
+/// Two runs that have been compared.
+struct Differing {
+    histories: [History; 2],
+    differences: Vec<Difference>,
+    voice: Voice,
+}
+
+impl Serve<usize> for Differing {
+    /// Tells what both did at a difference.
+    fn hear(&mut self, k: usize, _: &Receiver<usize>) -> ControlFlow<()> {
+        let Some(difference) = self.differences.get(k) else { return ControlFlow::Continue(()) };
+        let [a, b] = &mut self.histories;
+        match difference.told([a, b]) {
+            Ok(told) => {
+                self.voice.say(CompareNews::Told(k, Box::new(told)));
+                ControlFlow::Continue(())
+            }
+            Err(fault) => {
+                self.voice.complain(fault);
+                ControlFlow::Break(())
+            }
+        }
+    }
+}
+
+/// Compares two runs. Returns their histories, and the decisions in which they differ.
+fn compare([a, b]: [Run; 2], voice: &Voice) -> Result<([History; 2], Vec<Difference>), Fault> {
+    let mut watch = voice.watch();
     let backgrounds = [a.background(&mut watch)?, b.background(&mut watch)?];
     let [mut a, mut b] = [History::of(a, &backgrounds[0], KEPT)?, History::of(b, &backgrounds[1], KEPT)?];
     let first = first_difference([&mut a, &mut b], &mut watch)?;
     let parting = first.as_ref().map(|first| first.step);
-    said(CompareNews::First(first.map(Box::new)));
+    voice.say(CompareNews::First(first.map(Box::new)));
     let report = |run: &Run| {
-        let mut watch = new_watch();
+        let mut watch = voice.watch();
         let mut report = crate::app::compare::report(run, &mut watch)?;
         report.timing = watch.times.finish();
         Ok::<_, Fault>(report)
     };
-    said(CompareNews::Reports(Box::new([report(a.run())?, report(b.run())?])));
+    voice.say(CompareNews::Reports(Box::new([report(a.run())?, report(b.run())?])));
     let differences = match parting {
         Some(step) => differences([&mut a, &mut b], step, &mut watch)?,
         None => Vec::new(),
     };
-    said(CompareNews::Differences(differences.clone()));
-    while let Ok(k) = asked.recv() {
-        if let Some(difference) = differences.get(k) {
-            said(CompareNews::Told(k, Box::new(difference.told([&mut a, &mut b])?)));
-        }
-    }
-    Ok(())
+    voice.say(CompareNews::Differences(differences.clone()));
+    Ok(([a, b], differences))
 }
 
 /// Reports the progress of a comparison, and measures the time of its stages.
 struct CompareWatch<'a> {
-    say: &'a dyn Fn(CompareNews),
-    cancel: Cancel,
+    voice: &'a Voice,
     times: StageTimes,
 }
 
 impl Watch for CompareWatch<'_> {
     fn tell(&mut self, stage: Stage, done: u64, total: u64) {
         if self.times.begin(stage) {
-            (self.say)(CompareNews::Progress(Progress { words: words_of(stage), done, total }));
+            self.voice.say(CompareNews::Progress(Progress { words: words_of(stage), done, total }));
         }
     }
 
     fn cancel(&self) -> Cancel {
-        self.cancel.clone()
+        self.voice.cancel.clone()
     }
 
     fn allow(&mut self, need: &Need) -> Result<(), Fault> {
@@ -256,6 +295,8 @@ impl Command {
             self,
             Command::Open(_)
                 | Command::OpenWith(..)
+                | Command::OpenLink(_)
+                | Command::CopyLink
                 | Command::OpenDialog
                 | Command::OpenPath
                 | Command::OpenKept

@@ -1,4 +1,4 @@
-//! The reduction of the run to the smallest case in which a breakpoint is still met, on a thread of its own.
+//! The reduction of the run to the smallest case in which a breakpoint is still met, beside the window.
 
 use std::path::PathBuf;
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
@@ -6,7 +6,9 @@ use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use super::files::free_path;
 use super::session::Wake;
 use crate::app::reduce::{Reduction, child};
+use crate::app::tasks;
 use crate::core::fault::Fault;
+use crate::core::formats::save;
 use crate::core::kernel::number::counted;
 use crate::core::progress::Cancel;
 use crate::core::reduce::{Draft, Question, Written};
@@ -41,7 +43,7 @@ impl Reducing {
         let (tell, news) = channel();
         let cancel = Cancel::new();
         let (text, file, stop) = (condition.clone(), path.clone(), cancel.clone());
-        std::thread::spawn(move || {
+        tasks::work(move || {
             let said = |news| {
                 // Nobody listens once it has been stopped.
                 let _ = tell.send(news);
@@ -63,11 +65,11 @@ impl Reducing {
     pub fn stop(&mut self) {
         self.cancel.ask();
         self.news = None;
-        self.is_done = self.path.exists();
+        self.is_done = save::is_file(&self.path);
         self.told = if self.is_done { "Stopped: the smallest case so far".to_owned() } else { "Stopped".to_owned() };
     }
 
-    /// Takes in what its thread reports. Returns why it failed, if it did.
+    /// Takes in what it reports. Returns why it failed, if it did.
     pub fn hear(&mut self) -> Option<Fault> {
         loop {
             match self.news.as_ref()?.try_recv() {

@@ -1,8 +1,7 @@
-//! The run on threads of its own: the window asks for a state and the session reports it, so that the window never
-//! waits.
+//! The run beside the window: the window asks for a state and the session reports it, so that the window never waits.
 //!
-//! One thread owns the history and goes to the requested steps; another runs ahead with the history's recorder and
-//! hands over its record. A goal beyond the recorded steps waits until the recorder gets there, or until it is stopped.
+//! A server owns the history and goes to the requested steps; a task runs ahead with the history's recorder and hands
+//! over its record. A goal beyond the recorded steps waits until the recorder gets there, or until it is stopped.
 
 mod goal;
 mod moment;
@@ -12,7 +11,9 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, Sender, channel};
-use std::time::{Duration, Instant};
+use std::time::Duration;
+
+use web_time::Instant;
 
 pub use goal::{Direction, Goal};
 pub use moment::{Moment, Verdict};
@@ -22,6 +23,7 @@ use super::import::ImportOptions;
 use super::state::Progress;
 use crate::app::memory::{self, Beside};
 use crate::app::progress;
+use crate::app::tasks::{self, Post};
 use crate::core::convert::{Event, Why};
 use crate::core::fault::Fault;
 use crate::core::lesson::{Decision, Lesson, Scene};
@@ -74,7 +76,7 @@ pub enum Ask {
     Decisions,
     /// Change the run.
     Edits(Vec<Edit>),
-    /// The recorder's thread hands over what it has recorded.
+    /// The recorder hands over what it has recorded.
     Found(Box<(Stretch, Recorder)>),
     /// The window has closed the session.
     Gone,
@@ -196,16 +198,16 @@ pub struct ToldChain {
     pub chain: Option<Chain>,
 }
 
-/// A run on its threads.
+/// A run and what works on it.
 pub struct Session {
-    ask: Sender<Ask>,
+    ask: Post<Ask>,
     told: Receiver<SessionNews>,
     stop: Arc<AtomicBool>,
     /// Stops the opening.
     opening: Cancel,
 }
 
-/// Called from other threads when they have something to report.
+/// Called by work beside the window when it has something to report.
 pub type Wake = Arc<dyn Fn() + Send + Sync>;
 
 impl Session {
@@ -230,23 +232,27 @@ impl Session {
         make: impl FnOnce(&mut Voice) -> Result<(Run, Arc<Background>), Fault> + Send + 'static,
         wake: Wake,
     ) -> Session {
-        let (ask, asked) = channel();
         let (tell, told) = channel();
         let stop = Arc::new(AtomicBool::new(false));
         let opening = Cancel::new();
         let voice = Voice { tell, wake, last: Instant::now(), cancel: opening.clone() };
-        let (own, flag) = (ask.clone(), stop.clone());
-        std::thread::spawn(move || match Worker::open(make, own, voice, flag) {
-            Ok(mut worker) => worker.serve(&asked),
-            Err((voice, fault)) => voice.say(SessionNews::Fault(*fault, 1)),
+        let flag = stop.clone();
+        let (ask, _) = tasks::serve(move |own| match Worker::open(make, own.clone(), voice, flag) {
+            Ok(mut worker) => {
+                worker.begin();
+                Some(worker)
+            }
+            Err((voice, fault)) => {
+                voice.say(SessionNews::Fault(*fault, 1));
+                None
+            }
         });
         Session { ask, told, stop, opening }
     }
 
     /// Asks for something.
     pub fn ask(&self, ask: Ask) {
-        // A session that has ended has reported why.
-        let _ = self.ask.send(ask);
+        self.ask.send(ask);
     }
 
     /// Stops the work under way.
@@ -257,7 +263,7 @@ impl Session {
 
     /// The next report, if it comes soon.
     pub fn hear_within(&self, patience: Duration) -> Option<SessionNews> {
-        self.told.recv_timeout(patience).ok()
+        tasks::hear_within(&self.told, patience)
     }
 
     /// What has been reported since the last call.
@@ -326,4 +332,6 @@ pub enum Source {
     Mesh(PathBuf, ImportOptions),
     /// A lesson: one of the tour by its name, or a file by its path.
     Lesson(String),
+    /// A run that came with a link, as the text of a run file.
+    Linked(String),
 }

@@ -154,10 +154,10 @@ impl Settings {
                 .at(path.display().to_string())
                 .remedy("They are ignored, and written again when the window changes")
         };
-        let text = match std::fs::read_to_string(path) {
+        let text = match save::load_text(path) {
             Ok(text) => text,
-            Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
-            Err(error) => return Err(fault(error.to_string())),
+            Err(_) if !save::exists(path) => return Ok(None),
+            Err(error) => return Err(fault(error.what)),
         };
         let settings: Settings = serde_json::from_str(&text).map_err(|error| fault(error.to_string()))?;
         if settings.version != VERSION {
@@ -173,7 +173,7 @@ impl Settings {
     pub fn write(&self, path: &Path) -> Result<(), Fault> {
         let text = serde_json::to_string_pretty(self).map_err(|error| Fault::new(error.to_string()))?;
         if let Some(folder) = path.parent() {
-            std::fs::create_dir_all(folder).map_err(|error| {
+            save::make_folder(folder).map_err(|error| {
                 Fault::new(format!("The folder cannot be created: {error}")).at(folder.display().to_string())
             })?;
         }
@@ -186,7 +186,14 @@ pub fn path() -> Option<PathBuf> {
     state_folder().map(|own| own.join("window.json"))
 }
 
+/// The user's folder for state, in the storage of the browser; none if that keeps nothing.
+#[cfg(target_arch = "wasm32")]
+pub fn state_folder() -> Option<PathBuf> {
+    super::web::page::stored().map(|_| PathBuf::from("state"))
+}
+
 /// The user's folder for state: in `XDG_STATE_HOME` or this system's equivalent; none if the user has no home.
+#[cfg(not(target_arch = "wasm32"))]
 pub fn state_folder() -> Option<PathBuf> {
     let folder = |name: &str| std::env::var_os(name).map(PathBuf::from).filter(|path| path.is_absolute());
     let home = |rest: &str| folder("HOME").map(|home| home.join(rest));

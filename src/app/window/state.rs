@@ -28,6 +28,7 @@ use super::sweep::SweepWork;
 use crate::core::case::Parameters;
 use crate::core::mesh::NodeId;
 use crate::core::question::Series;
+use crate::core::record::link::Link;
 use crate::core::run::{Condition, Run, Watched, run};
 use crate::render::scene::{ColourBy, Outlined};
 
@@ -61,6 +62,8 @@ enum Wanted {
     Part(usize),
     /// A prediction.
     Series(Series),
+    /// What a link says of its run.
+    Linked(Box<Link>),
 }
 
 impl State {

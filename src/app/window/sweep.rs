@@ -10,8 +10,10 @@ use super::state::State;
 use crate::app::command_line::Overrides;
 use crate::app::output::Target;
 use crate::app::sweep::{Outputs, SweepLook, pool};
+use crate::app::tasks;
 use crate::core::case::Parameters;
 use crate::core::fault::Fault;
+use crate::core::formats::save;
 use crate::core::progress::Cancel;
 use crate::core::record::report::figures::{FIGURES, Figure};
 use crate::core::record::sweep::{Axis, Cell, DEFAULT_AXES, DEFAULT_FIGURE, Sweep, TIME};
@@ -101,7 +103,7 @@ impl SweepForm {
     }
 }
 
-/// What the thread of a sweep reports.
+/// What a sweep reports.
 enum News {
     Began(Box<Sweep>),
     Cells(Vec<(usize, Cell)>),
@@ -137,7 +139,7 @@ impl SweepWork {
         let (tell, news) = channel();
         let cancel = Cancel::new();
         let (own, stop) = (run.clone(), cancel.clone());
-        std::thread::spawn(move || {
+        tasks::work(move || {
             // Nobody listens once the sweep has been stopped.
             let tell = |news| {
                 let _ = tell.send(news);
@@ -178,7 +180,7 @@ impl SweepWork {
         self.news = None;
     }
 
-    /// Takes in what its thread reports. Returns a fault because of which it does not begin.
+    /// Takes in what it reports. Returns a fault because of which it does not begin.
     pub fn hear(&mut self) -> Option<Fault> {
         loop {
             match self.news.as_ref()?.try_recv() {
@@ -233,7 +235,7 @@ impl SweepWork {
     pub fn save(&self, path: &str, figure: &'static Figure, wake: Wake) -> Result<Option<Writing>, Fault> {
         let Some(sweep) = self.sweep.clone() else { return Ok(None) };
         let path = PathBuf::from(path.trim());
-        if path.exists() {
+        if save::is_file(&path) {
             let fault = Fault::new("There is a file of this name").at(path.display().to_string());
             return Err(fault.remedy("Choose another name: no file is overwritten"));
         }

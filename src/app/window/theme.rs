@@ -84,9 +84,9 @@ pub fn install(context: &Context) {
 pub(super) fn fonts() -> FontDefinitions {
     let mut fonts = FontDefinitions::default();
     let files: [(&str, &'static [u8]); 5] = [
-        ("plex", include_bytes!("../../../assets/fonts/IBMPlexSans-Regular.ttf")),
-        ("plex-medium", include_bytes!("../../../assets/fonts/IBMPlexSans-Medium.ttf")),
-        ("plex-semibold", include_bytes!("../../../assets/fonts/IBMPlexSans-SemiBold.ttf")),
+        ("plex", include_bytes!("../../../assets/fonts/QuadfrontSans-Regular.ttf")),
+        ("plex-medium", include_bytes!("../../../assets/fonts/QuadfrontSans-Medium.ttf")),
+        ("plex-semibold", include_bytes!("../../../assets/fonts/QuadfrontSans-SemiBold.ttf")),
         ("equation-italic", include_bytes!("../../../assets/fonts/QuadfrontEquation-Italic.ttf")),
         ("phosphor", include_bytes!("../../../assets/fonts/Phosphor.ttf")),
     ];
@@ -106,7 +106,9 @@ pub(super) fn fonts() -> FontDefinitions {
         (FontFamily::Name("semibold".into()), "plex-semibold"),
         (FontFamily::Name("equation-italic".into()), "equation-italic"),
     ] {
-        let mut names = vec![first.to_owned(), "phosphor".to_owned()];
+        // Only the regular font has all letters.
+        let mut names = [first, "plex", "phosphor"].map(str::to_owned).to_vec();
+        names.dedup();
         names.extend(fallback.iter().cloned());
         fonts.families.insert(family, names);
     }

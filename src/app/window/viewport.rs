@@ -350,6 +350,12 @@ fn moved(before: ViewCamera, view: ViewKind, camera: ViewCamera, commands: &mut 
     }
 }
 
+/// The state in words: a heading, and its description.
+#[cfg(target_arch = "wasm32")]
+pub fn in_words(state: &State) -> [String; 2] {
+    [spoken(state), described(state)]
+}
+
 /// The description of the view for screen readers.
 fn spoken(state: &State) -> String {
     match &state.run().moment {

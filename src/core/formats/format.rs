@@ -9,7 +9,7 @@ use super::medit;
 use super::msh;
 use super::obj;
 use super::ply;
-use super::save::{load_watched, save};
+use super::save::{self, load_watched};
 use super::stl;
 use super::vtu;
 use crate::core::fault::{Fault, FaultKind};
@@ -110,7 +110,7 @@ pub fn read_mesh_watched(path: &Path, sol: Option<&Path>, watch: &mut dyn Watch)
     let bytes = load_watched(path, &pace)?;
     let mut mesh = read_in(&path.display().to_string(), &bytes, format, path.parent(), &pace)?;
     let beside = path.with_extension("sol");
-    let sol = sol.or_else(|| (format == Format::Medit && beside.is_file()).then_some(beside.as_path()));
+    let sol = sol.or_else(|| (format == Format::Medit && save::is_file(&beside)).then_some(beside.as_path()));
     if let Some(sol) = sol {
         let bytes = load_watched(sol, &pace)?;
         let metric = medit::read_metric_watched(&sol.display().to_string(), &bytes, mesh.points.len(), &pace);
@@ -173,9 +173,9 @@ pub fn write_to(out: &mut dyn Write, format: Format, mesh: &MeshFile, options: W
 /// # Errors
 /// A fault with the file and the reason.
 pub fn write_mesh(path: &Path, format: Format, mesh: &MeshFile, options: WriteOptions) -> Result<(), Fault> {
-    save(path, |out| write_to(out, format, mesh, options))?;
+    save::save(path, |out| write_to(out, format, mesh, options))?;
     if let (Format::Medit, Some(metric)) = (format, &mesh.metric) {
-        save(&path.with_extension("sol"), |out| medit::write_metric(out, mesh, metric))?;
+        save::save(&path.with_extension("sol"), |out| medit::write_metric(out, mesh, metric))?;
     }
     Ok(())
 }

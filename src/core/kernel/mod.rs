@@ -1,6 +1,6 @@
 //! Small algorithms and values that know nothing of meshes: exact predicates, metric tensors and their spectra, box
-//! trees, point location, disjoint sets, parity over GF(2), fingerprints, numbers as text, spelling suggestions,
-//! enumerations with words, conditions over tables of fields.
+//! trees, point location, disjoint sets, parity over GF(2), fingerprints, numbers as text, percent-encoding,
+//! spelling suggestions, enumerations with words, conditions over tables of fields.
 
 pub mod predicates;
 pub mod tensor;
@@ -13,6 +13,7 @@ mod fingerprint;
 pub(crate) mod decimal;
 pub mod number;
 pub mod condition;
+pub(crate) mod percent;
 pub(crate) mod spelling;
 pub(crate) mod worded;
 

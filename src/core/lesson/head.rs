@@ -1,6 +1,6 @@
 //! The head of a lesson, TOML between two lines of `+++`: title, section, case, rules and parameters.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use crate::core::case::table::{Source, Table, Value};
 use crate::core::case::{Case, built_in, set_parameters};
@@ -16,6 +16,7 @@ pub(super) struct Head {
     pub title: String,
     pub section: String,
     pub case: Case,
+    pub case_file: Option<PathBuf>,
     pub rules: Vec<Rule>,
 }
 
@@ -48,7 +49,8 @@ pub(super) fn read(head: &str, file: &str, folder: &Path) -> Result<Head, Fault>
     let place = |fault: Fault| if fault.place.is_empty() { fault.at(format!("{file}, line 2")) } else { fault };
     let title = table.need("title", "\"Fig. 14: the top edge\"").map_err(place)?.text()?.to_owned();
     let section = table.get("section").map(|value| value.text()).transpose()?.unwrap_or_default().to_owned();
-    let mut case = case(&table.need("case", "\"figure-14\"").map_err(place)?, folder)?;
+    let named = table.need("case", "\"figure-14\"").map_err(place)?;
+    let (mut case, case_file) = case(&named, folder)?;
     if let Some(value) = table.get("parameters") {
         set_parameters(&mut case.parameters, &value.table()?)?;
     }
@@ -56,17 +58,18 @@ pub(super) fn read(head: &str, file: &str, folder: &Path) -> Result<Head, Fault>
         Some(value) => value.list()?.iter().map(rule).collect::<Result<_, _>>()?,
         None => Vec::new(),
     };
-    Ok(Head { title, section, case, rules })
+    Ok(Head { title, section, case, case_file, rules })
 }
 
-/// A built-in case by its name, or a case file by its path.
-fn case(value: &Value<'_>, folder: &Path) -> Result<Case, Fault> {
+/// A built-in case by its name, or a case file by its path, with that.
+fn case(value: &Value<'_>, folder: &Path) -> Result<(Case, Option<PathBuf>), Fault> {
     let name = value.text()?;
     if let Some(case) = built_in::named(name) {
-        return case;
+        return Ok((case?, None));
     }
     if name.ends_with(".toml") {
-        return Case::read(&folder.join(name)).map_err(|fault| fault.at(value.place()));
+        let case = Case::read(&folder.join(name)).map_err(|fault| fault.at(value.place()))?;
+        return Ok((case, Some(PathBuf::from(name))));
     }
     let names = || built_in::all().map(|(name, _)| name);
     let fault = value.fault(format!("There is no case \"{}\"", name.escape_debug()));

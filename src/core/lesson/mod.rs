@@ -28,7 +28,7 @@ mod scene;
 mod page;
 pub mod built_in;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 pub use equation::Equation;
 pub use go::Go;
@@ -60,6 +60,8 @@ pub struct Lesson {
     pub section: String,
     /// The case that it shows, with its parameters.
     pub case: Case,
+    /// The file of the case, from the folder of the lesson; `None` for a built-in case.
+    pub case_file: Option<PathBuf>,
     /// The rules that it is about.
     pub rules: Vec<Rule>,
     /// Its parts, at least one.
@@ -101,8 +103,9 @@ impl Lesson {
             Ok((head, parts))
         };
         let (head, parts) = read().map_err(|fault: Fault| fault.of_kind(FaultKind::Syntax))?;
-        let head::Head { title, section, case, rules } = head;
-        Ok(Lesson { name: name.to_owned(), title, section, case, rules, parts, file: file.to_owned() })
+        let head::Head { title, section, case, case_file, rules } = head;
+        let (name, file) = (name.to_owned(), file.to_owned());
+        Ok(Lesson { name, title, section, case, case_file, rules, parts, file })
     }
 
     /// The run that it shows.

@@ -1,5 +1,5 @@
-//! The records of a run: exported meshes, statistics, reports, run files, runs embedded in figures, sweeps over
-//! parameters.
+//! The records of a run: exported meshes, statistics, reports, run files, runs embedded in figures, links to states,
+//! sweeps over parameters.
 
 pub mod statistics;
 mod export;
@@ -7,6 +7,7 @@ mod flaw;
 pub mod report;
 pub mod run_file;
 pub mod figure;
+pub mod link;
 pub mod sweep;
 
 pub use export::Export;

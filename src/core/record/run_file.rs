@@ -30,14 +30,17 @@
 //! state = [{ step = 812, at = "nq=100", fingerprint = "9c1f..." }]
 //! ```
 
+mod alone;
 mod figure;
 mod inputs;
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
+pub use alone::{alone, parse_alone};
 pub use figure::MOST_STATES;
 pub use inputs::inputs;
+use inputs::{InputFile, InputFiles};
 use toml::de::DeTable;
 
 use crate::core::case::table::{Source, Table, Value};
@@ -50,20 +53,6 @@ use crate::core::run::{Bookmark, Camera, Edit, EditKind, Run};
 
 /// The supported version of run files.
 pub const VERSION: u32 = 1;
-
-/// An input file of a run, outside the run file.
-#[derive(Clone, Debug, PartialEq)]
-struct Link {
-    path: PathBuf,
-    fingerprint: Fingerprint,
-}
-
-/// The mesh of a run and its metric, if it has them.
-#[derive(Clone, Debug, Default, PartialEq)]
-struct Links {
-    mesh: Option<Link>,
-    sol: Option<Link>,
-}
 
 /// Whether a text is a run file: it has the key `run`.
 pub fn is_run(text: &str) -> bool {
@@ -130,8 +119,8 @@ fn parsed(text: &str, file: &str, folder: &Path) -> Result<Run, Fault> {
 fn case(table: &Table<'_>, file: &str, folder: &Path) -> Result<Case, Fault> {
     table.only(&["name", "text", "split_odd", "mesh", "sol"])?;
     let name = table.need("name", "\"plate\"")?.text()?;
-    let mesh = table.get("mesh").map(|value| link(&value, folder)).transpose()?;
-    let sol = table.get("sol").map(|value| link(&value, folder)).transpose()?;
+    let mesh = table.get("mesh").map(|value| input_file(&value, folder)).transpose()?;
+    let sol = table.get("sol").map(|value| input_file(&value, folder)).transpose()?;
     let mut case = match (table.get("text"), &mesh) {
         (Some(text), _) => Case::parse(text.text()?, name, &format!("{file}, its case"), folder)?,
         (None, Some(mesh)) => Case { name: name.to_owned(), ..Case::of_mesh(mesh.clone(), None) },
@@ -152,7 +141,7 @@ fn case(table: &Table<'_>, file: &str, folder: &Path) -> Result<Case, Fault> {
 }
 
 /// The path of a file, which must be unchanged.
-fn link(value: &Value<'_>, folder: &Path) -> Result<PathBuf, Fault> {
+fn input_file(value: &Value<'_>, folder: &Path) -> Result<PathBuf, Fault> {
     let table = value.table()?;
     table.only(&["path", "fingerprint"])?;
     let path = folder.join(table.need("path", "\"plate.msh\"")?.text()?);
@@ -219,33 +208,11 @@ fn camera(table: &Table<'_>) -> Result<Camera, Fault> {
     Ok(camera)
 }
 
-impl Links {
-    fn of(run: &Run) -> Result<Links, Fault> {
-        let (path, sol) = match &run.case.domain {
-            DomainSource::Mesh { source: MeshSource::File { path, sol }, .. } => (path, sol),
-            DomainSource::Mesh { source: MeshSource::Memory(_), .. } => {
-                let fault = Fault::new("The run starts from a mesh in memory, which a run file cannot name");
-                return Err(fault.of_kind(FaultKind::Mesh).remedy("Write the mesh to a file and begin from that"));
-            }
-            _ => return Ok(Links::default()),
-        };
-        let link = |path: &Path| -> Result<Link, Fault> {
-            let absolute = std::path::absolute(path).unwrap_or_else(|_| path.to_path_buf());
-            Ok(Link { fingerprint: Fingerprint::of(&load(path)?), path: absolute })
-        };
-        // A Medit mesh uses the .sol of the same name if it exists, so that file belongs to the run too.
-        let beside = Some(path.with_extension("sol"))
-            .filter(|sol| path.extension().is_some_and(|e| e.eq_ignore_ascii_case("mesh")) && sol.is_file());
-        let sol = sol.clone().or(beside);
-        Ok(Links { mesh: Some(link(path)?), sol: sol.map(|sol| link(&sol)).transpose()? })
-    }
-}
-
 /// Keeps a run file up to date: reads the input files once, and writes only changes.
 #[derive(Debug)]
 pub struct Keeper {
     path: PathBuf,
-    links: Links,
+    files: InputFiles,
     written: String,
 }
 
@@ -255,7 +222,7 @@ impl Keeper {
     /// # Errors
     /// A mesh of the run that cannot be read.
     pub fn new(path: PathBuf, run: &Run) -> Result<Keeper, Fault> {
-        Ok(Keeper { path, links: Links::of(run)?, written: String::new() })
+        Ok(Keeper { path, files: InputFiles::of(run)?, written: String::new() })
     }
 
     /// The autosave file of the run file `path`.
@@ -274,7 +241,7 @@ impl Keeper {
     /// # Errors
     /// As [`save`]: the old file is unchanged, and the next call tries again.
     pub fn keep(&mut self, run: &Run) -> Result<bool, Fault> {
-        let text = text(run, &self.links, self.path.parent().unwrap_or(Path::new("")));
+        let text = text(run, &self.files, self.path.parent().unwrap_or(Path::new("")));
         if text == self.written {
             return Ok(false);
         }
@@ -297,15 +264,15 @@ pub fn write(path: &Path, run: &Run) -> Result<(), Fault> {
 /// # Errors
 /// A mesh of the run that cannot be read.
 pub fn embedded(run: &Run) -> Result<String, Fault> {
-    Ok(text(run, &Links::of(run)?, Path::new("")))
+    Ok(text(run, &InputFiles::of(run)?, Path::new("")))
 }
 
 /// As [`embedded`], also in its errors, for a file in a folder: with paths of meshes relative to it.
 pub fn written_in(run: &Run, folder: &Path) -> Result<String, Fault> {
-    Ok(text(run, &Links::of(run)?, folder))
+    Ok(text(run, &InputFiles::of(run)?, folder))
 }
 
-fn text(run: &Run, links: &Links, folder: &Path) -> String {
+fn text(run: &Run, files: &InputFiles, folder: &Path) -> String {
     let mut text = format!(
         "run = {VERSION}\nprogram = \"{} {}\"\n\n[case]\nname = {}\n",
         env!("CARGO_PKG_NAME"),
@@ -321,8 +288,8 @@ fn text(run: &Run, links: &Links, folder: &Path) -> String {
         line(format_args!("split_odd = {}\n", run.case.split_odd));
     }
     let folder = std::path::absolute(folder).ok();
-    for (key, link) in [("mesh", &links.mesh), ("sol", &links.sol)] {
-        let Some(Link { path, fingerprint }) = link else { continue };
+    for (key, input) in [("mesh", &files.mesh), ("sol", &files.sol)] {
+        let Some(InputFile { path, fingerprint }) = input else { continue };
         // A relative path, where possible, lets both files be moved together.
         let near = folder.as_ref().and_then(|folder| path.strip_prefix(folder).ok());
         let path = near.unwrap_or(path).to_string_lossy();

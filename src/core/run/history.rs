@@ -4,15 +4,15 @@
 //! All stored data stays within a budget: whole meshes, differences, events, the journal of the current state, and that
 //! of the stretch before it, which is prepared during steps back.
 
+mod ahead;
 mod editing;
 
 use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
 
 use super::explain::Selecting;
 use super::keyframes::{Keyframe, Keyframes};
 use super::log::Log;
-use super::recorder::{Recorder, SPACING, Stretch};
+use super::recorder::{Recorder, SPACING};
 use super::run::{EditKind, Run};
 use crate::core::convert::{Converter, Event, EventKind};
 use crate::core::fault::Fault;
@@ -49,6 +49,8 @@ pub struct History {
     recorder: Option<Recorder>,
     /// Counts changes of the edits and restarts of the recorder.
     edition: u64,
+    /// The edition of the recorder that was lent last, until it is back.
+    lent: Option<u64>,
     ended: bool,
     /// Why the conversion cannot continue after the last known step.
     stuck: Option<Fault>,
@@ -118,6 +120,7 @@ impl History {
             keyframes,
             recorder: Some(recorder),
             edition: 0,
+            lent: None,
             ended: false,
             stuck: None,
             now,
@@ -199,80 +202,6 @@ impl History {
         let (nodes, elements) = (self.changed.nodes().to_vec(), self.changed.elements().to_vec());
         self.changed.clear();
         Changes::Some { nodes, elements }
-    }
-
-    // ---- running ahead ----
-
-    /// Runs ahead until the step is known or the run ends; does nothing while the recorder is lent.
-    pub fn extend(&mut self, step: u64) {
-        let Some(mut recorder) = self.recorder.take() else { return };
-        while self.log.known() < step && self.end().is_none() {
-            let count = (step - self.log.known()).min(16 * SPACING);
-            let stretch = recorder.run(count, &AtomicBool::new(false));
-            self.accept(stretch);
-        }
-        self.recorder = Some(recorder);
-    }
-
-    /// Searches, and where nothing is found runs further ahead and searches again.
-    pub(super) fn ahead<T>(&mut self, look: impl Fn(&History) -> Option<T>) -> Option<T> {
-        loop {
-            if let Some(found) = look(self) {
-                return Some(found);
-            }
-            let known = self.log.known();
-            self.extend(known + 4 * SPACING);
-            if self.log.known() == known {
-                return None;
-            }
-        }
-    }
-
-    /// Lends the recorder, so that another thread can run ahead. [`History::accept`] takes its results,
-    /// [`History::take_back`] the recorder itself. `None` where it is already lent, or where the end is known.
-    pub fn lend(&mut self) -> Option<Recorder> {
-        if self.end().is_some() { None } else { self.recorder.take() }
-    }
-
-    /// Adds a stretch that the recorder ran. False where it belongs to other edits or other steps: then its recorder is
-    /// obsolete.
-    pub fn accept(&mut self, stretch: Stretch) -> bool {
-        if stretch.edition != self.edition || stretch.from != self.log.known() {
-            return false;
-        }
-        self.log.append(stretch.log);
-        for keyframe in stretch.keyframes {
-            self.keyframes.push(keyframe);
-            self.keyframes.thin(self.budget / 4);
-        }
-        self.log.give_up(self.budget / 4);
-        self.ended |= stretch.ended;
-        self.stuck = stretch.fault;
-        true
-    }
-
-    /// Takes the recorder back. One of other edits or other steps is dropped and replaced.
-    ///
-    /// # Errors
-    /// An invalid edit.
-    pub fn take_back(&mut self, recorder: Recorder) -> Result<(), Fault> {
-        if recorder.is_of(self.edition) && recorder.step() == self.log.known() {
-            self.recorder = Some(recorder);
-            return Ok(());
-        }
-        if self.recorder.is_none() { self.resume_recorder() } else { Ok(()) }
-    }
-
-    /// Makes a new recorder at the last keyframe and drops everything known after it.
-    fn resume_recorder(&mut self) -> Result<(), Fault> {
-        self.edition += 1;
-        let recorder = Recorder::resume(Arc::clone(&self.run), &self.keyframes, self.edition)?;
-        let step = recorder.step();
-        self.log.truncate(step);
-        self.recorder = Some(recorder);
-        (self.ended, self.stuck) = (false, None);
-        self.keyframes.truncate(self.log.known());
-        if self.log.known() < step { self.resume_recorder() } else { Ok(()) }
     }
 
     // ---- seeking ----

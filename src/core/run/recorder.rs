@@ -2,7 +2,6 @@
 //! lent to another thread and returns its results in stretches.
 
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::births::Appearing;
 use super::front_count::{FrontTracker, changes_front};
@@ -15,6 +14,7 @@ use crate::core::convert::{Converter, Event, EventKind, Phase};
 use crate::core::fault::Fault;
 use crate::core::mesh::{ElementId, FreeLists, Mesh, Touched};
 use crate::core::metric::measure::angle;
+use crate::core::progress::Cancel;
 
 /// A keyframe is due after this many steps, whose replay takes about a millisecond.
 pub(super) const SPACING: u64 = 1024;
@@ -128,8 +128,8 @@ impl Recorder {
         *self.converter.phase() == Phase::Done
     }
 
-    /// Runs at most this many steps, until the conversion is finished or cannot continue, or until `stop` is set.
-    pub fn run(&mut self, steps: u64, stop: &AtomicBool) -> Stretch {
+    /// Runs at most this many steps, until the conversion is finished or cannot continue, or until `cancel` is asked.
+    pub fn run(&mut self, steps: u64, cancel: &Cancel) -> Stretch {
         let mut stretch = Stretch {
             from: self.step,
             edition: self.edition,
@@ -139,7 +139,7 @@ impl Recorder {
             fault: None,
         };
         for _ in 0..steps {
-            if self.is_done() || stop.load(Ordering::Relaxed) {
+            if self.is_done() || cancel.is_asked() {
                 break;
             }
             if let Err(fault) = self.advance(&mut stretch) {

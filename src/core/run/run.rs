@@ -90,6 +90,16 @@ pub struct Camera {
     pub height: f64,
 }
 
+impl Camera {
+    /// The turn of a view that looks straight down at the plane.
+    pub const OF_THE_PLANE: [f64; 4] = [0.0, 0.0, 0.0, 1.0];
+
+    /// Whether the view looks straight down at the plane, as views of the plane do.
+    pub fn is_of_the_plane(&self) -> bool {
+        self.target[2] == 0.0 && self.turn == Camera::OF_THE_PLANE
+    }
+}
+
 /// A run: its case, parameters and edits at steps determine each of its states, bit for bit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Run {

@@ -17,6 +17,7 @@ struct View {
     depth: vec4<f32>,
 };
 
+// Views are orthographic: w is 1, so that all is interpolated linearly in the picture, as WebGL does it only then.
 @group(0) @binding(0) var<uniform> view: View;
 
 fn premultiplied(colour: vec4<f32>, coverage: f32) -> vec4<f32> {
@@ -104,7 +105,7 @@ struct LineOut {
     @builtin(position) position: vec4<f32>,
     @location(0) @interpolate(flat) colour: vec4<f32>,
     // Along and across the line in points, from its first end.
-    @location(1) @interpolate(linear) place: vec2<f32>,
+    @location(1) place: vec2<f32>,
     // Length, half width, and the dash.
     @location(2) @interpolate(flat) shape: vec4<f32>,
 };
@@ -190,7 +191,7 @@ struct DotOut {
     @builtin(position) position: vec4<f32>,
     @location(0) @interpolate(flat) fill: vec4<f32>,
     @location(1) @interpolate(flat) ring: vec4<f32>,
-    @location(2) @interpolate(linear) place: vec2<f32>,
+    @location(2) place: vec2<f32>,
     // Radius and width of the ring.
     @location(3) @interpolate(flat) shape: vec2<f32>,
 };

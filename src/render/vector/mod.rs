@@ -9,7 +9,7 @@ pub mod heat_map;
 pub mod timeline;
 pub mod decision;
 pub mod svg;
-#[cfg(feature = "cli")]
+#[cfg(all(feature = "cli", not(target_arch = "wasm32")))]
 pub mod pdf;
 #[cfg(feature = "window")]
 pub mod png;

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::app::window::state::{Breakpoint, Watchpoint};
 use crate::core::fault::Fault;
-use crate::core::formats::save::save;
+use crate::core::formats::save::{load_text, save};
 use crate::core::mesh::{ElementId, NodeId};
 use crate::core::run::Watched;
 
@@ -39,7 +39,7 @@ enum Thing {
 impl Marks {
     /// Reads marks; none where there is no file or where it has another form: the run itself does not depend on it.
     pub(super) fn read(path: &Path) -> Marks {
-        let text = std::fs::read_to_string(path).unwrap_or_default();
+        let text = load_text(path).unwrap_or_default();
         let Written { step, breakpoints, watches } = serde_json::from_str(&text).unwrap_or_default();
         let watched = |thing| match thing {
             Thing::Node(n) => Watched::Node(NodeId(n)),

@@ -1,66 +1,27 @@
-//! The files of autosaved runs, their locks, and abandoned runs.
+//! The files of autosaved runs, and abandoned runs.
 
-use std::fs::{File, OpenOptions};
+#[cfg(not(target_arch = "wasm32"))]
+mod disk;
+#[cfg(not(target_arch = "wasm32"))]
+use disk as place;
+#[cfg(target_arch = "wasm32")]
+mod browser;
+#[cfg(target_arch = "wasm32")]
+use browser as place;
+
 use std::path::{Path, PathBuf};
-use std::time::SystemTime;
+
+use web_time::SystemTime;
 
 use super::Marks;
-use crate::app::window::settings::state_folder;
-use crate::core::fault::Fault;
+use crate::core::formats::save;
 use crate::core::kernel::number::counted;
 use crate::core::record::run_file;
 
-/// The folder of autosaved runs; none if the user has no home.
-pub fn folder() -> Option<PathBuf> {
-    state_folder().map(|own| own.join("runs"))
-}
-
-/// The file of an autosaved run, with the lock of the window that it belongs to.
-#[derive(Debug)]
-pub(super) struct RunSlot {
-    pub path: PathBuf,
-    lock: PathBuf,
-    /// Held for the lifetime of this value.
-    _held: File,
-}
+pub(super) use place::RunSlot;
+pub use place::folder;
 
 impl RunSlot {
-    /// A new file.
-    pub fn new(folder: &Path) -> Result<RunSlot, Fault> {
-        let refuse = |what: std::io::Error| {
-            Fault::new(format!("The run cannot be autosaved: {what}"))
-                .at(folder.display().to_string())
-                .remedy("Make the folder writable, or save the run with Ctrl+S")
-        };
-        std::fs::create_dir_all(folder).map_err(refuse)?;
-        for number in 0.. {
-            let path = folder.join(format!("{}-{number}.toml", std::process::id()));
-            let lock = path.with_extension("lock");
-            // The system may reuse the number of a process that has ended.
-            if path.exists() {
-                continue;
-            }
-            match OpenOptions::new().write(true).create_new(true).open(&lock) {
-                Ok(held) => {
-                    held.lock().map_err(refuse)?;
-                    return Ok(RunSlot { path, lock, _held: held });
-                }
-                Err(error) if error.kind() == std::io::ErrorKind::AlreadyExists && number < 10_000 => {}
-                Err(error) => return Err(refuse(error)),
-            }
-        }
-        unreachable!("the numbers do not end")
-    }
-
-    /// Claims an abandoned file.
-    fn claim(path: PathBuf) -> Option<RunSlot> {
-        let lock = path.with_extension("lock");
-        let held = OpenOptions::new().write(true).create(true).truncate(false).open(&lock).ok()?;
-        held.try_lock().ok()?;
-        // Another window may have removed it in the meantime.
-        path.exists().then_some(RunSlot { path, lock, _held: held })
-    }
-
     /// The file of what was set in the window beside the run.
     pub fn marks(&self) -> PathBuf {
         self.path.with_extension("json")
@@ -69,9 +30,9 @@ impl RunSlot {
     /// Removes it.
     pub fn remove(self) {
         // A file that cannot be removed is offered once more: nothing is lost.
-        let _ = std::fs::remove_file(&self.path);
-        let _ = std::fs::remove_file(self.marks());
-        let _ = std::fs::remove_file(&self.lock);
+        save::remove(&self.path);
+        save::remove(&self.marks());
+        self.let_go();
     }
 }
 
@@ -88,7 +49,7 @@ pub struct Offer {
 
 impl Offer {
     fn of(slot: RunSlot) -> Offer {
-        let since = std::fs::metadata(&slot.path).and_then(|meta| meta.modified()).ok();
+        let since = slot.written();
         let marks = Marks::read(&slot.marks());
         let ago = since.map_or_else(String::new, |since| format!(" from {}", ago(since)));
         let (text, opens) = match run_file::read(&slot.path) {
@@ -122,12 +83,8 @@ fn ago(since: SystemTime) -> String {
 
 /// The abandoned runs of a folder, the latest first.
 pub(super) fn left_behind(folder: &Path) -> Vec<Offer> {
-    let Ok(entries) = std::fs::read_dir(folder) else { return Vec::new() };
-    let is_run = |path: &PathBuf| path.extension().is_some_and(|e| e == "toml");
-    let paths = entries.filter_map(|entry| entry.ok().map(|entry| entry.path())).filter(is_run);
-    let mut slots: Vec<RunSlot> = paths.filter_map(RunSlot::claim).collect();
-    let written = |slot: &RunSlot| std::fs::metadata(&slot.path).and_then(|meta| meta.modified()).ok();
-    slots.sort_by_key(|slot| std::cmp::Reverse((written(slot), slot.path.clone())));
+    let mut slots = place::abandoned(folder);
+    slots.sort_by_key(|slot| std::cmp::Reverse((slot.written(), slot.path.clone())));
     slots.into_iter().map(Offer::of).collect()
 }
 

@@ -48,6 +48,8 @@ impl Purpose {
             | Command::ToggleCurved => Purpose::Views,
             Command::OpenPath
             | Command::Reopen
+            | Command::CopyLink
+            | Command::SavePage
             | Command::SaveRun
             | Command::SaveMesh
             | Command::Export
@@ -120,6 +122,7 @@ pub fn keys() -> Vec<(Modifiers, Key, Command)> {
         (CTRL, Key::Z, Command::Undo),
         (CTRL, Key::Y, Command::Redo),
         (CTRL, Key::O, Command::OpenPath),
+        (CTRL, Key::L, Command::CopyLink),
         (CTRL, Key::S, Command::SaveRun),
         (CTRL, Key::M, Command::SaveMesh),
         (CTRL, Key::E, Command::Export),

@@ -1,13 +1,15 @@
-//! The thread that reads a mesh, repairs it, finds its features and charts, and draws them. Of several requests the
-//! latest counts: work on an earlier one is stopped.
+//! What reads a mesh beside the window, repairs it, finds its features and charts, and draws them. Of several requests
+//! the latest counts: work on an earlier one is stopped.
 
+use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
-use std::time::Instant;
 
 use glam::DVec3;
+use web_time::Instant;
 
+use crate::app::tasks::{self, Post, Serve};
 use crate::app::window::session::{EVERY, Wake, words_of};
 use crate::app::window::state::Progress;
 use crate::app::window::theme;
@@ -74,7 +76,7 @@ pub struct Shown {
     pub scene: Arc<Scene>,
 }
 
-/// What the thread reports.
+/// What is reported.
 pub enum PreviewNews {
     Progress(Progress),
     Loaded(Result<Arc<Loaded>, Fault>),
@@ -89,32 +91,29 @@ struct Ask {
     cancel: Cancel,
 }
 
-/// The thread.
+/// What reads and draws.
 pub struct Preview {
-    ask: Sender<Ask>,
+    ask: Post<Ask>,
     told: Receiver<PreviewNews>,
     /// Ends what is under way.
     cancel: Cancel,
 }
 
 impl Preview {
-    /// Starts to read a mesh without the groups that are ignored; `wake` is called when the thread has something to
-    /// report.
+    /// Starts to read a mesh without the groups that are ignored; `wake` is called when there is something to
+    /// hear.
     pub fn of(path: PathBuf, ignored: Ignored, wake: Wake) -> Preview {
-        let (ask, asked) = channel();
         let (tell, told) = channel();
         let cancel = Cancel::new();
         let reading = cancel.clone();
-        std::thread::spawn(move || {
+        let (ask, _) = tasks::serve(move |_| {
             let mut voice = Voice { tell, wake, cancel: reading, last: None };
             let loaded = load(&path, &ignored, &mut voice).map(Arc::new);
             let read = loaded.as_ref().ok().cloned();
             if !matches!(&loaded, Err(fault) if fault.is_stop()) {
                 voice.say(PreviewNews::Loaded(loaded));
             }
-            if let Some(loaded) = read {
-                Work { loaded, features: None, division: None }.serve(&asked, &mut voice);
-            }
+            Some(Work { loaded: read?, features: None, division: None, voice })
         });
         Preview { ask, told, cancel }
     }
@@ -124,8 +123,7 @@ impl Preview {
     pub fn ask(&mut self, wanted: Wanted, generation: u64) {
         self.cancel.ask();
         self.cancel = Cancel::new();
-        // A thread that has ended has reported why.
-        let _ = self.ask.send(Ask { wanted, generation, cancel: self.cancel.clone() });
+        self.ask.send(Ask { wanted, generation, cancel: self.cancel.clone() });
     }
 
     /// What has been reported since the last call.
@@ -224,23 +222,25 @@ struct Work {
     loaded: Arc<Loaded>,
     features: Option<(f64, Arc<[Option<Feature>]>)>,
     division: Option<(f64, StretchBound, Arc<Division>)>,
+    voice: Voice,
+}
+
+impl Serve<Ask> for Work {
+    fn hear(&mut self, ask: Ask, later: &Receiver<Ask>) -> ControlFlow<()> {
+        let ask = later.try_iter().last().unwrap_or(ask);
+        self.voice.cancel = ask.cancel.clone();
+        // A request that was stopped has no picture: there is a later one.
+        if let Err(fault) = self.show(&ask)
+            && !fault.is_stop()
+        {
+            self.voice.say(PreviewNews::Refused(fault));
+        }
+        ControlFlow::Continue(())
+    }
 }
 
 impl Work {
-    fn serve(&mut self, asked: &Receiver<Ask>, voice: &mut Voice) {
-        while let Ok(first) = asked.recv() {
-            let ask = asked.try_iter().last().unwrap_or(first);
-            voice.cancel = ask.cancel.clone();
-            // A request that was stopped has no picture: there is a later one.
-            if let Err(fault) = self.show(&ask, voice)
-                && !fault.is_stop()
-            {
-                voice.say(PreviewNews::Refused(fault));
-            }
-        }
-    }
-
-    fn show(&mut self, ask: &Ask, voice: &mut Voice) -> Result<(), Fault> {
+    fn show(&mut self, ask: &Ask) -> Result<(), Fault> {
         let Ask { wanted, generation, cancel } = ask;
         let loaded = self.loaded.clone();
         let Loaded { mesh, edges, .. } = &*loaded;
@@ -275,16 +275,16 @@ impl Work {
                     // An interim picture, without charts, does not answer the request.
                     let mut first = picture(None, generation - 1)?;
                     first.wanted.bound = None;
-                    voice.say(PreviewNews::Shown(Arc::new(first)));
+                    self.voice.say(PreviewNews::Shown(Arc::new(first)));
                 }
-                let charts = charts(mesh, edges, &features, bound, voice)?;
+                let charts = charts(mesh, edges, &features, bound, &mut self.voice)?;
                 let division = Arc::new(Division::of(mesh, edges, &features, &charts));
                 self.division = Some((angle, bound, division.clone()));
                 Some(division)
             }
         };
         let shown = picture(division, *generation)?;
-        voice.say(PreviewNews::Shown(Arc::new(shown)));
+        self.voice.say(PreviewNews::Shown(Arc::new(shown)));
         Ok(())
     }
 }

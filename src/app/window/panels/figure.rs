@@ -18,6 +18,7 @@ use crate::app::window::command::Command;
 use crate::app::window::figures::{self, Content, Formats};
 use crate::app::window::state::State;
 use crate::app::window::theme::ink;
+use crate::core::formats::save;
 use crate::render::look::{Ink, Layer};
 use crate::render::palette::Palette;
 
@@ -126,12 +127,14 @@ fn form(ui: &mut Ui, window: &State, commands: &mut Vec<Command>, palette: &Pale
         if !(is_film && figure.film.follows) {
             row("part", &mut |ui| radios(ui, &mut figure.in_view, parts));
         }
-        row("folder", &mut |ui| {
-            ui.horizontal(|ui| {
-                field(ui, &mut figure.folder, "Folder of the figure", "the working folder");
-                on_click(&ui.button("Choose…"), Command::ChooseFolder, commands);
+        if save::ON_DISK {
+            row("folder", &mut |ui| {
+                ui.horizontal(|ui| {
+                    field(ui, &mut figure.folder, "Folder of the figure", "the working folder");
+                    on_click(&ui.button("Choose…"), Command::ChooseFolder, commands);
+                });
             });
-        });
+        }
         row("name", &mut |ui| field(ui, &mut figure.name, "Name of the figure", "from case and step"));
     });
     if !figure.content.is_plot() {
@@ -165,11 +168,14 @@ fn form(ui: &mut Ui, window: &State, commands: &mut Vec<Command>, palette: &Pale
     let folder = names[0].parent().filter(|folder| !folder.as_os_str().is_empty()).map(Path::to_path_buf);
     let folder = folder.or_else(|| std::env::current_dir().ok()).unwrap_or_default();
     let files = names.iter().filter_map(|name| name.file_name()).map(|name| name.to_string_lossy());
-    let text = format!("{} in {}", files.collect::<Vec<_>>().join(" and "), folder.display());
+    let mut text = files.collect::<Vec<_>>().join(" and ");
+    if save::ON_DISK {
+        text += &format!(" in {}", folder.display());
+    }
     ui.add(Label::new(note(text, palette)).wrap());
     ui.add_space(4.0);
     ui.horizontal(|ui| {
-        for formats in Formats::ALL {
+        for formats in Formats::made() {
             on_click(&ui.button(format!("Save {}", formats.name())), Command::SaveFigure(formats), commands);
         }
         if state.run().is_making_figure() {

@@ -15,6 +15,7 @@ use crate::app::window::sweep::{SweepCommand, SweepWork};
 use crate::app::window::theme::{self, ink};
 use crate::app::window::words;
 use crate::core::formats::Format;
+use crate::core::record::link::Link;
 use crate::render::palette::Palette;
 
 const WIDTH: f32 = 460.0;
@@ -66,10 +67,14 @@ pub fn show(context: &Context, state: &State, local: &mut OverState, commands: &
                     missing(ui, state.active(), &local.field, commands, palette);
                 }
                 Overlay::Path => {
-                    let hint = "The path of a case (.toml) or a mesh, or the name of a built-in case";
+                    let hint = "The path of a case (.toml) or a mesh, the name of a built-in case, or a link";
                     if field(ui, &mut local.field, hint, "Path") {
-                        let source = Source::named(local.field.trim());
-                        commands.extend([Command::CloseOverlay, Command::Open(source)]);
+                        let named = local.field.trim();
+                        let open = match Link::is_link(named) {
+                            true => Command::OpenLink(named.to_owned()),
+                            false => Command::Open(Source::named(named)),
+                        };
+                        commands.extend([Command::CloseOverlay, open]);
                     }
                 }
                 Overlay::PathBeside => {

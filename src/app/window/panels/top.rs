@@ -110,7 +110,11 @@ fn items<const N: usize>(ui: &mut Ui, all: [Command; N], commands: &mut Vec<Comm
 fn menus(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) -> f32 {
     ui.menu_button("Case", |ui| {
         items(ui, [Command::OpenDialog, Command::OpenPath, Command::Reopen, Command::Import], commands);
-        items(ui, [Command::SaveRun, Command::SaveMesh, Command::Notes], commands);
+        items(
+            ui,
+            [Command::SaveRun, Command::SaveMesh, Command::CopyLink, Command::SavePage, Command::Notes],
+            commands,
+        );
         ui.separator();
         items(ui, [PairCommand::Fork, PairCommand::AskBeside].map(Command::Pair), commands);
         ui.separator();

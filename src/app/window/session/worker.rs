@@ -1,21 +1,25 @@
-//! The thread that owns the history of the run: it goes to the requested steps, answers questions about the current
-//! state, and lends another thread the recorder that runs ahead.
+//! The server that owns the history of the run: it goes to the requested steps, answers questions about the current
+//! state, and lends a task of its own the recorder that runs ahead.
 
 mod arriving;
 mod teaching;
 
 use std::collections::VecDeque;
+use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{Receiver, Sender, TryRecvError};
-use std::time::Instant;
+use std::sync::mpsc::Receiver;
+
+use web_time::Instant;
 
 use super::{Ask, Direction, Explained, Goal, Opened, Past, SessionNews, ToldChain, Transcript, Voice};
+use crate::app::tasks::{self, Post, Rest, Serve};
 use crate::core::convert::{Event, Why};
 use crate::core::fault::Fault;
 use crate::core::lesson::Lesson;
 use crate::core::mesh::{ElementId, NodeId};
 use crate::core::prepare::Background;
+use crate::core::progress::Cancel;
 use crate::core::question::{Drawn, Series};
 use crate::core::run::copies::Since;
 use crate::core::run::history::BUDGET;
@@ -61,10 +65,10 @@ struct Pending {
     since: Instant,
 }
 
-/// The thread that owns the history.
+/// What owns the history.
 pub(super) struct Worker {
     history: History,
-    own: Sender<Ask>,
+    own: Post<Ask>,
     voice: Voice,
     stop: Arc<AtomicBool>,
     /// Where to go as soon as the step is known.
@@ -72,8 +76,8 @@ pub(super) struct Worker {
     /// The series to draw as soon as the whole run is recorded.
     series: Option<Series>,
     conditions: Vec<Condition>,
-    /// Tells the recorder's thread to stop.
-    cancel: Arc<AtomicBool>,
+    /// Ends the work of the recorder.
+    cancel: Cancel,
     /// How many steps have been reported to the window.
     tracked: u64,
     triangles: u64,
@@ -92,10 +96,70 @@ pub(super) struct Worker {
     even: bool,
 }
 
+impl Serve<Ask> for Worker {
+    fn hear(&mut self, ask: Ask, _: &Receiver<Ask>) -> ControlFlow<()> {
+        match ask {
+            Ask::Gone => {
+                self.cancel.ask();
+                return ControlFlow::Break(());
+            }
+            Ask::Go(goal, since) => self.go(Aim::Goals(vec![goal]), since),
+            Ask::Break(stops, direction) => self.go(Aim::Break(stops, direction), Instant::now()),
+            Ask::Touch(watched) => {
+                self.go_back(self.history.last_touch(watched), "Nothing has touched it before this step.");
+            }
+            Ask::Made(element) => self.go_back(self.history.made(element), "It exists from the beginning."),
+            Ask::Past(watched) => self.past(watched),
+            Ask::Chain(element) => self.chain(element),
+            Ask::Transcript(from, until) => {
+                let told = self.history.transcript(from, until).map(|sentences| Transcript { from, sentences });
+                self.report(told.map(|told| SessionNews::Transcript(Arc::new(told))), 0);
+            }
+            Ask::Ended(watched) => {
+                let step = self.history.step();
+                let ended = self.history.ended(watched);
+                self.report(ended.map(|ended| SessionNews::Ended(step, watched, ended)), 0);
+            }
+            Ask::Count(conditions) => {
+                self.conditions = conditions;
+                self.count();
+            }
+            Ask::Explain([a, b]) => self.explain(a, b),
+            Ask::Part(lesson, part) => self.go(Aim::Part(lesson, part), Instant::now()),
+            Ask::Question(drawn) => self.go(Aim::Question(drawn), Instant::now()),
+            Ask::NextQuestion(from) => self.go(Aim::NextQuestion(from), Instant::now()),
+            Ask::Draw(series) => self.series = Some(series),
+            Ask::Judge(asked, answer) => self.judge(&asked, answer),
+            Ask::Decisions => self.decisions(),
+            Ask::Edits(edits) => self.edit(edits),
+            Ask::Found(found) => self.found(found.0, found.1),
+        }
+        if self.stop.swap(false, Ordering::Relaxed)
+            && let Some(pending) = self.pending.take()
+        {
+            // The steps up to here are known.
+            let aim = Aim::Goals(vec![Goal::Step(self.history.log().known())]);
+            self.pending = Some(Pending { aim, ..pending });
+        }
+        self.arrive();
+        self.draw();
+        ControlFlow::Continue(())
+    }
+
+    /// Checks of the whole mesh wait until there are no requests.
+    fn rest(&mut self) -> Rest {
+        if !self.unchecked {
+            return Rest::Asleep;
+        }
+        self.check();
+        Rest::Busy
+    }
+}
+
 impl Worker {
     pub(super) fn open(
         make: impl FnOnce(&mut Voice) -> Result<(Run, Arc<Background>), Fault>,
-        own: Sender<Ask>,
+        own: Post<Ask>,
         mut voice: Voice,
         stop: Arc<AtomicBool>,
     ) -> Result<Worker, (Voice, Box<Fault>)> {
@@ -109,7 +173,6 @@ impl Worker {
         };
         let triangles = background.mesh.element_count() as u64;
         voice.say(SessionNews::Opened(Arc::new(Opened { run: history.run().clone(), background })));
-        let cancel = Arc::new(AtomicBool::new(false));
         let even = history.log().front(0).odd == 0;
         Ok(Worker {
             history,
@@ -119,7 +182,7 @@ impl Worker {
             pending: Some(Pending { aim: Aim::Goals(vec![Goal::Step(0)]), asks: 1, since: Instant::now() }),
             series: None,
             conditions: Vec::new(),
-            cancel,
+            cancel: Cancel::new(),
             tracked: 0,
             triangles,
             copies: Copies::default(),
@@ -132,64 +195,10 @@ impl Worker {
         })
     }
 
-    pub(super) fn serve(&mut self, asked: &Receiver<Ask>) {
+    /// Begins to record, and goes to the first state.
+    pub(super) fn begin(&mut self) {
         self.lend(STRETCH[0]);
         self.arrive();
-        loop {
-            // Checks of the whole mesh wait until there are no requests.
-            let ask = match asked.try_recv() {
-                Err(TryRecvError::Empty) if self.unchecked => {
-                    self.check();
-                    continue;
-                }
-                Err(TryRecvError::Empty) => asked.recv().ok(),
-                other => other.ok(),
-            };
-            let Some(ask) = ask else { break };
-            match ask {
-                Ask::Gone => break,
-                Ask::Go(goal, since) => self.go(Aim::Goals(vec![goal]), since),
-                Ask::Break(stops, direction) => self.go(Aim::Break(stops, direction), Instant::now()),
-                Ask::Touch(watched) => {
-                    self.go_back(self.history.last_touch(watched), "Nothing has touched it before this step.");
-                }
-                Ask::Made(element) => self.go_back(self.history.made(element), "It exists from the beginning."),
-                Ask::Past(watched) => self.past(watched),
-                Ask::Chain(element) => self.chain(element),
-                Ask::Transcript(from, until) => {
-                    let told = self.history.transcript(from, until).map(|sentences| Transcript { from, sentences });
-                    self.report(told.map(|told| SessionNews::Transcript(Arc::new(told))), 0);
-                }
-                Ask::Ended(watched) => {
-                    let step = self.history.step();
-                    let ended = self.history.ended(watched);
-                    self.report(ended.map(|ended| SessionNews::Ended(step, watched, ended)), 0);
-                }
-                Ask::Count(conditions) => {
-                    self.conditions = conditions;
-                    self.count();
-                }
-                Ask::Explain([a, b]) => self.explain(a, b),
-                Ask::Part(lesson, part) => self.go(Aim::Part(lesson, part), Instant::now()),
-                Ask::Question(drawn) => self.go(Aim::Question(drawn), Instant::now()),
-                Ask::NextQuestion(from) => self.go(Aim::NextQuestion(from), Instant::now()),
-                Ask::Draw(series) => self.series = Some(series),
-                Ask::Judge(asked, answer) => self.judge(&asked, answer),
-                Ask::Decisions => self.decisions(),
-                Ask::Edits(edits) => self.edit(edits),
-                Ask::Found(found) => self.found(found.0, found.1),
-            }
-            if self.stop.swap(false, Ordering::Relaxed)
-                && let Some(pending) = self.pending.take()
-            {
-                // The steps up to here are known.
-                let aim = Aim::Goals(vec![Goal::Step(self.history.log().known())]);
-                self.pending = Some(Pending { aim, ..pending });
-            }
-            self.arrive();
-            self.draw();
-        }
-        self.cancel.store(true, Ordering::Relaxed);
     }
 
     /// A goal follows one that still waits if it is relative, so that every key press counts; otherwise it replaces it.
@@ -305,8 +314,8 @@ impl Worker {
     }
 
     fn edit(&mut self, edits: Vec<Edit>) {
-        self.cancel.store(true, Ordering::Relaxed);
-        self.cancel = Arc::new(AtomicBool::new(false));
+        self.cancel.ask();
+        self.cancel = Cancel::new();
         let step = self.history.step();
         let before = self.history.run().edits();
         let same = before.iter().zip(&edits).take_while(|(a, b)| a == b).count();
@@ -322,14 +331,13 @@ impl Worker {
         self.count();
     }
 
-    /// Has another thread run ahead for some steps.
+    /// Has the recorder run ahead for some steps.
     fn lend(&mut self, steps: u64) {
         let Some(mut recorder) = self.history.lend() else { return };
         let (own, cancel) = (self.own.clone(), self.cancel.clone());
-        std::thread::spawn(move || {
+        tasks::work(move || {
             let stretch = recorder.run(steps, &cancel);
-            // The session may have ended meanwhile.
-            let _ = own.send(Ask::Found(Box::new((stretch, recorder))));
+            own.send(Ask::Found(Box::new((stretch, recorder))));
         });
     }
 

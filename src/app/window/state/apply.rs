@@ -2,6 +2,7 @@
 
 mod finding;
 mod held;
+mod linking;
 mod marking;
 mod opening;
 mod pair;
@@ -11,7 +12,9 @@ mod saving;
 mod studying;
 mod sweeping;
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
+
+use web_time::Instant;
 
 pub(super) use pair::are_in_one_place;
 
@@ -216,6 +219,9 @@ impl State {
                     autosave.discard();
                 }
             }
+            Command::OpenLink(text) => self.open_link(&text),
+            Command::CopyLink => self.copy_link(),
+            Command::SavePage => self.save_page(),
             Command::SaveRun => drop(self.save_run()),
             Command::SaveMesh => {
                 if self.run.opened.is_some() && self.run.moment.is_some() {

@@ -1,13 +1,16 @@
 //! Takes in what worker threads report. With `apply` this is the only place that changes [`State`].
 
 mod files;
+mod linking;
 mod opening;
 mod pair;
 mod stopping;
 mod studying;
 
 use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::time::Duration;
+
+use web_time::Instant;
 
 use super::{Look, State};
 use crate::app::figure::another_state;
@@ -179,6 +182,7 @@ impl State {
             }
             self.view.look.ask(Look::Near(what));
         }
+        self.arrive_by_link(&moment);
         self.compare(&moment);
     }
 

@@ -1,7 +1,9 @@
 //! The log of all messages of a window.
 
 use std::collections::VecDeque;
-use std::time::{Duration, Instant};
+use std::time::Duration;
+
+use web_time::Instant;
 
 /// How many messages are kept.
 const MOST: usize = 500;

@@ -1,7 +1,8 @@
 //! The run: what is open, how far it is known, and the work under way on other threads.
 
 use std::sync::Arc;
-use std::time::Instant;
+
+use web_time::Instant;
 
 use crate::app::command_line::Overrides;
 use crate::app::window::autosave::Autosave;
@@ -13,6 +14,7 @@ use crate::app::window::measure::Measuring;
 use crate::app::window::session::{Explained, Moment, Opened, Past, Session, Source, ToldChain, Transcript, Verdict};
 use crate::core::convert::Phase;
 use crate::core::mesh::{ElementId, NodeId};
+use crate::core::record::link::Link;
 use crate::core::run::copies::Since;
 use crate::core::run::timeline::Tracked;
 use crate::core::run::{Born, ChangeLog, Sample, ShownState, Sought, Watched};
@@ -109,6 +111,8 @@ pub struct RunState {
     pub(super) watcher: Option<Watcher>,
     /// The state of a figure that was opened, until the run gets there.
     pub(super) awaited: Option<ShownState>,
+    /// What a link says of the state that it leads to, until the run gets there.
+    pub(super) linked: Option<Link>,
     /// The differences between the current state and the one that the views took last.
     pub(super) changes: Since,
     /// Commands that wait until it owes none.

@@ -1,8 +1,9 @@
 //! What is seen: cameras, what is open over the window, messages, and requests to the views and panels.
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use glam::DVec2;
+use web_time::Instant;
 
 use super::log::MessageLog;
 use crate::app::window::layout::Pane;
@@ -157,6 +158,8 @@ pub struct FrameState {
     pub toggle_theme: bool,
     /// Save a picture of the window.
     pub screenshot: bool,
+    /// Copy this to the clipboard.
+    pub copied: Option<String>,
 }
 
 #[cfg(test)]

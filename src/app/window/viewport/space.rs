@@ -145,7 +145,7 @@ fn aim(state: &State, moment: &Moment, size: DVec2, look: Option<Look>) -> (Came
         }
         Some(Look::From(side)) => (camera, is_fitted) = (fit(moment, side.turn(), size), true),
         // A camera of the plane looks straight down at it.
-        Some(Look::Kept(kept)) if kept.target[2] == 0.0 && kept.turn == [0.0, 0.0, 0.0, 1.0] => {}
+        Some(Look::Kept(kept)) if kept.is_of_the_plane() => {}
         Some(Look::Kept(kept)) => {
             camera.take_up(&kept, size);
             is_fitted = false;

@@ -2,11 +2,48 @@
 
 use std::path::{Path, PathBuf};
 
-use super::{Link, Links, text};
-use crate::core::case::Parameters;
-use crate::core::fault::Fault;
+use super::text;
+use crate::core::case::{DomainSource, MeshSource, Parameters};
+use crate::core::fault::{Fault, FaultKind};
+use crate::core::formats::save::{is_file, load};
 use crate::core::kernel::Fingerprint;
 use crate::core::run::Run;
+
+/// An input file of a run, outside the run file.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct InputFile {
+    pub path: PathBuf,
+    pub fingerprint: Fingerprint,
+}
+
+/// The mesh of a run and its metric, if it has them.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct InputFiles {
+    pub mesh: Option<InputFile>,
+    pub sol: Option<InputFile>,
+}
+
+impl InputFiles {
+    pub fn of(run: &Run) -> Result<InputFiles, Fault> {
+        let (path, sol) = match &run.case.domain {
+            DomainSource::Mesh { source: MeshSource::File { path, sol }, .. } => (path, sol),
+            DomainSource::Mesh { source: MeshSource::Memory(_), .. } => {
+                let fault = Fault::new("The run starts from a mesh in memory, which a run file cannot name");
+                return Err(fault.of_kind(FaultKind::Mesh).remedy("Write the mesh to a file and begin from that"));
+            }
+            _ => return Ok(InputFiles::default()),
+        };
+        let input = |path: &Path| -> Result<InputFile, Fault> {
+            let absolute = std::path::absolute(path).unwrap_or_else(|_| path.to_path_buf());
+            Ok(InputFile { fingerprint: Fingerprint::of(&load(path)?), path: absolute })
+        };
+        // A Medit mesh uses the .sol of the same name if it exists, so that file belongs to the run too.
+        let beside = Some(path.with_extension("sol"))
+            .filter(|sol| path.extension().is_some_and(|e| e.eq_ignore_ascii_case("mesh")) && is_file(sol));
+        let sol = sol.clone().or(beside);
+        Ok(InputFiles { mesh: Some(input(path)?), sol: sol.map(|sol| input(&sol)).transpose()? })
+    }
+}
 
 /// The fingerprint of everything but the parameters that determines the states of a run: the version of the program,
 /// the text of the case, the bytes of its mesh and metric files, the edits. Where these and the parameters are the
@@ -19,11 +56,11 @@ pub fn inputs(run: &Run) -> Result<Fingerprint, Fault> {
     plain.case.name.clear();
     plain.parameters = Parameters::default();
     plain.set_edits(run.edits().to_vec());
-    let Links { mesh, sol } = Links::of(run)?;
+    let InputFiles { mesh, sol } = InputFiles::of(run)?;
     // A file is the same wherever it is.
-    let placeless = |link: Option<Link>| link.map(|link| Link { path: PathBuf::new(), ..link });
-    let links = Links { mesh: placeless(mesh), sol: placeless(sol) };
-    Ok(Fingerprint::of(text(&plain, &links, Path::new("")).as_bytes()))
+    let placeless = |input: Option<InputFile>| input.map(|input| InputFile { path: PathBuf::new(), ..input });
+    let files = InputFiles { mesh: placeless(mesh), sol: placeless(sol) };
+    Ok(Fingerprint::of(text(&plain, &files, Path::new("")).as_bytes()))
 }
 
 #[cfg(test)]

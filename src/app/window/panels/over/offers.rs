@@ -50,6 +50,14 @@ pub fn typed(text: &str) -> Option<Command> {
 /// What can be done in the panels at hand, with its name; `state` is the run that they show.
 pub fn at_hand(window: &State, state: &State) -> Vec<(String, Command)> {
     let mut all = Vec::new();
+    if let Some((offer, _)) = window.run().autosave.as_ref().and_then(|autosave| autosave.offer()) {
+        let kept = offer.opens.then_some(Command::OpenKept).into_iter().chain([Command::DiscardKept]);
+        all.extend(kept.map(|command| (command.name(), command)));
+    }
+    if let Some(import) = &window.run().import {
+        all.extend(import.is_ready().then(|| ("Convert the mesh".to_owned(), Command::Convert)));
+        all.push(("Cancel the import".to_owned(), Command::CancelImport));
+    }
     if let Some(posed) = state.open_question() {
         let choices = posed.asked.kind.choices().iter();
         let answer = |choice| Command::Study(StudyCommand::Answer(Answer::Choice(choice)));

@@ -1,7 +1,8 @@
 //! Opens cases and meshes, and gives them up.
 
 use std::path::PathBuf;
-use std::time::Instant;
+
+use web_time::Instant;
 
 use super::State;
 use crate::app::command_line::Overrides;
@@ -12,6 +13,7 @@ use crate::app::{input, lesson};
 use crate::core::case::built_in;
 use crate::core::fault::Fault;
 use crate::core::formats::Format;
+use crate::core::record::run_file;
 use crate::core::run::Run;
 
 impl State {
@@ -21,6 +23,7 @@ impl State {
         if let Source::File(path) = &source
             && Format::from_path(path).is_ok()
         {
+            self.wanted = None;
             return self.import(path.clone(), ImportOptions::default(), overrides);
         }
         let (named, changed) = (source.clone(), overrides.clone());
@@ -100,5 +103,10 @@ pub(super) fn read(source: &Source, overrides: &Overrides) -> Result<Run, Fault>
         Source::File(path) => input::run_of(path, &ImportOptions::default(), overrides),
         Source::Mesh(path, options) => input::run_of(path, options, overrides),
         Source::Lesson(name) => Ok(lesson::found(name)?.run()),
+        Source::Linked(text) => {
+            let mut run = run_file::parse_alone(text, &source.name())?;
+            overrides.apply(&mut run, "--set")?;
+            Ok(run)
+        }
     }
 }

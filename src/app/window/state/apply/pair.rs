@@ -1,7 +1,8 @@
 //! Two runs: which of them a command is for, and what is done with both.
 
 use std::sync::Arc;
-use std::time::Instant;
+
+use web_time::Instant;
 
 use super::State;
 use crate::app::command_line::Overrides;

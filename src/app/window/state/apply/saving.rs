@@ -7,7 +7,7 @@ use crate::app::window::autosave::Autosave;
 use crate::app::window::figures::{self, Formats};
 use crate::app::window::files;
 use crate::app::window::film::FilmWork;
-use crate::app::window::mesh_out;
+use crate::app::window::{mesh_out, page_out};
 use crate::core::record::run_file;
 use crate::render::film::FilmFormat;
 
@@ -59,6 +59,11 @@ impl State {
             Ok(writing) => self.run.figures.extend(writing),
             Err(fault) => self.complain(&fault),
         }
+    }
+
+    /// Starts to write what is shown as a page.
+    pub(super) fn save_page(&mut self) {
+        self.run.figures.extend(page_out::begin(self.active(), self.wake.clone()));
     }
 
     /// Starts to write the current mesh to a path.

@@ -101,6 +101,13 @@ impl State {
     pub(in crate::app::window::state) fn teach(&mut self, part: usize) {
         let Some(study) = &mut self.study else { return };
         let Subject::Lesson { lesson, source, part: at } = &mut study.subject else { return };
+        if !matches!(&self.run.source, Some(Source::Lesson(name)) if name == source) {
+            // A link has brought the lesson beside another run.
+            let own = Source::Lesson(source.clone());
+            self.open(own, Overrides::default());
+            self.wanted = Some(Wanted::Part(part));
+            return;
+        }
         *at = part.min(lesson.parts.len() - 1);
         let ask = Ask::Part(lesson.clone(), *at);
         self.workspace.learned.be_at(source, *at);
@@ -218,7 +225,7 @@ impl State {
         let Some(study) = &mut self.study else { return };
         study.frames += 1;
         let step = study.taught.as_ref().map(|taught| taught.step);
-        let is_lesson = study.lesson().is_some();
+        let is_lesson = matches!(&self.run.source, Some(Source::Lesson(_)));
         let own = self.run.opened.as_ref().map(|opened| opened.run.edits().to_vec());
         if let Some(own) = own.filter(|own| is_lesson && *own != self.document().edits) {
             self.change(|document| document.edits = own);

@@ -2,7 +2,8 @@
 
 use std::path::PathBuf;
 use std::sync::Arc;
-use std::time::Instant;
+
+use web_time::Instant;
 
 use crate::app::window::autosave::Marks;
 use crate::app::window::files::Watcher;
@@ -11,6 +12,7 @@ use crate::app::window::state::{Look, Opening, RunState, State, ViewCamera};
 use crate::app::window::words;
 use crate::core::case::built_in;
 use crate::core::fault::Fault;
+use crate::core::formats::save;
 use crate::core::lesson;
 
 impl State {
@@ -75,13 +77,14 @@ impl State {
         let is_again = self.run.source.as_ref() == Some(&source);
         let breakpoints = if is_again { self.document().breakpoints.clone() } else { Vec::new() };
         let watcher = match &source {
-            // The window itself writes this file.
+            // The window itself writes this file, and nobody else one that is not on a disk.
             Source::File(_) if recovered.is_some() => None,
+            _ if !save::ON_DISK => None,
             Source::File(path) | Source::Mesh(path, _) => Some(Watcher::of(path.clone(), self.wake.clone())),
             Source::Lesson(name) if lesson::built_in::title(name).is_none() => {
                 Some(Watcher::of(PathBuf::from(name), self.wake.clone()))
             }
-            Source::BuiltIn(_) | Source::Lesson(_) => None,
+            Source::BuiltIn(_) | Source::Lesson(_) | Source::Linked(_) => None,
         };
         let is_figure =
             matches!(&source, Source::BuiltIn(name) if built_in::FIGURES.iter().any(|figure| figure.0 == name));

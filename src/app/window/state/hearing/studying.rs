@@ -16,6 +16,7 @@ impl State {
     pub(super) fn begin_study(&mut self) {
         let (wanted, before) = (self.wanted.take(), self.study.take());
         match (self.run.source.clone(), wanted) {
+            (_, Some(Wanted::Linked(link))) => self.begin_by_link(*link),
             (Some(Source::Lesson(name)), wanted) => match lesson::found(&name) {
                 Ok(lesson) => {
                     // A file that has changed is read again at the same part.
