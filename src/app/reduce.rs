@@ -94,8 +94,10 @@ impl Reduction<'_> {
     ) -> Result<Reduced, Fault> {
         let Reduction { question, run, original, tries, cancel, start } = self;
         tell("Looking at the case as it is".to_owned());
-        let folder =
-            tempfile::tempdir().map_err(|error| Fault::new(format!("Cannot make a temporary folder: {error}")))?;
+        let folder = tempfile::tempdir().map_err(|error| {
+            Fault::new(format!("Cannot make a temporary folder: {error}"))
+                .remedy("A reduction needs a disk: in a browser, save the run and use quadfront reduce")
+        })?;
         let panic_of = |path: &Path| -> Result<Option<Finding>, Fault> {
             Ok(child::panic_of(start(path), cancel)?.map(|panic| Finding::panic(&panic)))
         };
