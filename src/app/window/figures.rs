@@ -234,8 +234,8 @@ impl FigureForm {
     }
 }
 
-/// Starts to make the figure that the panel describes and to write it, on a thread of its own; does nothing if nothing
-/// is open. The thread calls `wake` when it is done.
+/// Starts to make the figure that the panel describes and to write it, beside the window; does nothing if nothing
+/// is open. `wake` is called when it is done.
 ///
 /// # Errors
 /// If the form has no meaning.
@@ -245,7 +245,7 @@ pub fn begin(state: &State, formats: Formats, wake: Wake) -> Result<Option<Writi
     Ok(make.map(|make| files::work(wake, move || write(&make()?, &stem, formats))))
 }
 
-/// Starts to draw the figure in at most so many pixels, on a thread of its own.
+/// Starts to draw the figure in at most so many pixels, beside the window.
 ///
 /// # Errors
 /// If the form has no meaning.
@@ -343,7 +343,7 @@ fn options(state: &State, moment: &Moment, in_view: bool) -> Result<FigureOption
     form.options(part, side.map(|side| (side, state.workspace().surfaces.hidden)))
 }
 
-/// Starts to write the page with the notes on bookmarked steps, on a thread of its own, in the working folder; does
+/// Starts to write the page with the notes on bookmarked steps, beside the window, in the working folder; does
 /// nothing if nothing is open. The figures look as the panel says.
 ///
 /// # Errors

@@ -20,8 +20,8 @@ pub fn suggested_path(state: &State) -> String {
     free_path(&format!("{}{step}", opened.run.case.name), "vtu").display().to_string()
 }
 
-/// Starts to write the current mesh, in the format of the path's extension; does nothing if nothing is open. The thread
-/// calls `wake` when it is done.
+/// Starts to write the current mesh, in the format of the path's extension; does nothing if nothing is open. `wake` is
+/// called when it is done.
 ///
 /// # Errors
 /// If there is such a file, or no such format.

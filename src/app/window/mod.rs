@@ -1,7 +1,7 @@
 //! The window: a stepping debugger for the merging front.
 //!
 //! What the user does becomes a [`Command`]. The panels read the `state` and return commands; only `state::apply` and
-//! `state::hearing` change it. The run works on threads of its own (`session`), so that the window never waits.
+//! `state::hearing` change it. The run works beside the window (`session`), which never waits.
 
 mod words;
 mod icons;

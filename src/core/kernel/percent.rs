@@ -1,4 +1,4 @@
-//! Percent-encoding (RFC 3986, section 2.1) of values in links.
+//! Percent-encoding (RFC 3986, section 2.1) of values in links, and of addresses in files.
 
 /// What stands for itself beside letters and digits: the unreserved characters, and others that a fragment may have
 /// and that separate no words.

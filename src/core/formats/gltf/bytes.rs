@@ -15,6 +15,7 @@ use gltf::buffer::{Source, View};
 use crate::core::fault::Fault;
 use crate::core::formats::save::load;
 use crate::core::formats::scan::{DAMAGED, TRUNCATED, shown};
+use crate::core::kernel::percent;
 
 /// The contents of the buffers, by index. The binary chunk of a `.glb` is borrowed.
 #[derive(Default)]
@@ -165,7 +166,7 @@ fn external(uri: &str, folder: Option<&Path>) -> Result<Vec<u8>, String> {
     let Some(folder) = folder else {
         return Err(format!("is the file {}, but external files cannot be read here", shown(uri.as_bytes())));
     };
-    let path = decoded(uri).ok_or_else(|| format!("has the invalid address {}", shown(uri.as_bytes())))?;
+    let path = percent::decoded(uri).ok_or_else(|| format!("has the invalid address {}", shown(uri.as_bytes())))?;
     let inside = Path::new(&path).components().all(|part| matches!(part, Component::Normal(_) | Component::CurDir));
     if !inside || path.contains(':') || path.contains('\\') {
         return Err(format!("is {}, which is outside the document's folder", shown(uri.as_bytes())));
@@ -180,22 +181,4 @@ fn external(uri: &str, folder: Option<&Path>) -> Result<Vec<u8>, String> {
         return Err(format!("is a link to {} outside the document's folder", shown(uri.as_bytes())));
     }
     load(&file).map_err(|fault| format!("cannot be read: {fault}").trim_end_matches('.').to_owned())
-}
-
-/// Decodes the percent-encoding of an address.
-fn decoded(uri: &str) -> Option<String> {
-    let mut bytes = Vec::with_capacity(uri.len());
-    let mut rest = uri.as_bytes();
-    while let [first, after @ ..] = rest {
-        rest = after;
-        if *first == b'%' {
-            let [high, low, after @ ..] = after else { return None };
-            let digit = |byte: &u8| char::from(*byte).to_digit(16);
-            bytes.push((16 * digit(high)? + digit(low)?) as u8);
-            rest = after;
-        } else {
-            bytes.push(*first);
-        }
-    }
-    String::from_utf8(bytes).ok()
 }

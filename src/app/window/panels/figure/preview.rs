@@ -1,4 +1,4 @@
-//! A preview of the figure as the panel describes it, drawn on a thread of its own by the code that writes it.
+//! A preview of the figure as the panel describes it, drawn beside the window by the code that writes it.
 
 use std::sync::mpsc::{Receiver, TryRecvError};
 
