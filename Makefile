@@ -33,12 +33,12 @@ web-test: web
 	QUADFRONT_NEEDS_BROWSER=1 cargo test --locked --no-default-features --features cli --test web
 
 # One build serves the tests, the examples and the end-to-end test; the library alone is compiled once more for its
-# bytes.
-test:
-	@tools/setup build run test
+# bytes. The window is tested in a browser too.
+test: web
+	@tools/setup build run test browser
 	@mkdir -p out
-	QUADFRONT_NEEDS_ADAPTER=1 QUADFRONT_NEEDS_READERS=1 XDG_RUNTIME_DIR=$$(tools/runtime-dir) \
-		cargo test --locked --features uitest
+	QUADFRONT_NEEDS_ADAPTER=1 QUADFRONT_NEEDS_READERS=1 QUADFRONT_NEEDS_BROWSER=1 \
+		XDG_RUNTIME_DIR=$$(tools/runtime-dir) cargo test --locked --features uitest
 	@for example in convert_case convert_stl step_events worst_quadrilateral figure; do \
 		cargo run --locked --quiet --features uitest --example $$example > out/$$example.txt || exit 1; \
 	done

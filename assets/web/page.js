@@ -41,9 +41,18 @@ function soon(call) {
     messages.port2.postMessage(null);
 }
 
+// Whether this browser can suspend a program (JavaScript Promise Integration).
+const suspends = Boolean(WebAssembly.promising && WebAssembly.Suspending);
+
 globalThis.quadfront = {
     program,
     later: (milliseconds) => (milliseconds ? setTimeout(program.runTask, milliseconds) : soon(program.runTask)),
+    // A task that gives way goes on later by itself. One that cannot must not begin within a frame: when it ends, the
+    // program takes the stack to be empty.
+    now() {
+        if (suspends) program.runTask();
+        return suspends;
+    },
     giveWay: () => new Promise((goOn) => soon(goOn)),
     own: () => own,
     async template() {
@@ -74,17 +83,25 @@ globalThis.quadfront = {
             return "the browser keeps no more for this page";
         }
     },
-    tell(title, heading, description) {
+    tell(title, heading, description, lesson) {
         document.title = title;
         element("heading").textContent = heading;
         element("narration").textContent = description;
+        // A paragraph of its own for each; what stays is not said again.
+        const paragraphs = lesson ? lesson.split(/\n{2,}/) : [];
+        const shown = element("lesson");
+        paragraphs.forEach((text, k) => {
+            const paragraph = shown.children[k] ?? shown.appendChild(document.createElement("p"));
+            if (paragraph.textContent !== text) paragraph.textContent = text;
+        });
+        while (shown.children.length > paragraphs.length) shown.lastChild.remove();
     },
 };
 
 // ---- the program ----
 
 // A browser that cannot suspend a program runs each of its tasks to its end.
-if (!WebAssembly.promising || !WebAssembly.Suspending) {
+if (!suspends) {
     WebAssembly.promising = (call) => async (...given) => call(...given);
     WebAssembly.Suspending = function () {
         return () => {};

@@ -14,7 +14,7 @@ use std::ops::ControlFlow;
 use std::sync::mpsc::Receiver;
 use std::time::Duration;
 
-pub(super) use platform::{Ended, Post, hear_within, serve, work};
+pub(super) use platform::{Ended, Post, give_turns, hear_within, serve, work};
 
 /// Something that answers messages, one after the other.
 pub(super) trait Serve<M> {

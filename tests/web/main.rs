@@ -2,7 +2,7 @@
 //! that: a browser, a server that is its proxy as well, and the proof that a request to anybody else would be seen.
 //!
 //! Where Chromium, chromedriver or out/web is missing, tests that need it do nothing; where `QUADFRONT_NEEDS_BROWSER`
-//! is set, as by `make web-test`, that is a failure.
+//! is set, as by `make test`, that is a failure.
 #![allow(clippy::unwrap_used)]
 
 mod driver;

@@ -354,4 +354,27 @@ fn around_the_canvas_the_page_says_in_words_what_is_shown() {
     assert_ne!(said("narration"), before);
     assert!(said("keys").as_str().unwrap().contains("Save the run"));
     assert_eq!(page.browser.execute("return document.title", &[]), json!("example1 – quadfront"));
+    assert_eq!(said("lesson"), json!(""));
+}
+
+#[test]
+fn around_the_canvas_the_page_says_what_a_lesson_tells_and_asks() {
+    let Some(page) = Page::open("#lesson=figure-14") else { return };
+    let said = || page.browser.execute("return document.getElementById('lesson').innerText", &[]);
+    page.browser.until("return document.getElementById('lesson').textContent.includes('Step')");
+    let lesson = quadfront::core::lesson::built_in::named("figure-14").unwrap().unwrap();
+    let first = said();
+    let first = first.as_str().unwrap();
+    assert!(first.contains(&lesson.title) && first.contains(&lesson.parts[0].heading), "{first}");
+    // Each press leads on: to the answer of a question that is open, or to the next question or part.
+    let mut all = vec![first.to_owned()];
+    let knows = |all: &[String], words: &str| all.iter().any(|said| said.contains(words));
+    for _ in 0..20 {
+        if knows(&all, &lesson.parts[1].heading) && knows(&all, "Question: ") && knows(&all, "The answer: ") {
+            return;
+        }
+        page.press(&["Return"]);
+        all.push(said().as_str().unwrap().to_owned());
+    }
+    panic!("{all:#?}");
 }

@@ -26,6 +26,10 @@ extern "C" {
     #[wasm_bindgen(js_name = later)]
     fn call_later(milliseconds: u32);
 
+    /// Calls [`run_task`] at once, and returns when the task has ended or gives way. Whether that is possible here.
+    #[wasm_bindgen(js_name = now)]
+    fn call_now() -> bool;
+
     /// Returns once the page has done what it waits for.
     #[wasm_bindgen(js_name = giveWay, suspending)]
     fn give_way();
@@ -176,7 +180,27 @@ where
     (post, Ended(Box::new(move || seat.turn())))
 }
 
-/// The next report of some work, if it has come. A page cannot wait for it.
-pub fn hear_within<T>(reports: &Receiver<T>, _: Duration) -> Option<T> {
-    reports.try_recv().ok()
+/// Has a task whose time has come take a turn. Whether there was one.
+fn give_turn() -> bool {
+    let now = Instant::now();
+    TASKS.with_borrow(|tasks| tasks.iter().any(|(time, _)| *time <= now)) && call_now()
+}
+
+/// Has the tasks whose time has come take turns, for about so long. Whether there were any.
+pub fn give_turns(time: Duration) -> bool {
+    let begin = Instant::now();
+    let any = give_turn();
+    while any && begin.elapsed() < time && give_turn() {}
+    any
+}
+
+/// The next report of some work, if it comes soon. A page cannot wait for it: it gives the tasks their turns.
+pub fn hear_within<T>(reports: &Receiver<T>, patience: Duration) -> Option<T> {
+    let begin = Instant::now();
+    loop {
+        match reports.try_recv() {
+            Err(TryRecvError::Empty) if begin.elapsed() < patience && give_turn() => {}
+            report => return report.ok(),
+        }
+    }
 }

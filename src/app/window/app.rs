@@ -8,6 +8,7 @@ use eframe::egui::{self, Context, Frame, Key, Panel, Popup, RawInput, Ui, Viewpo
 use eframe::{CreationContext, wgpu};
 use web_time::Instant;
 
+use super::clips::FewerClips;
 use super::command::{Command, keys_in, keys_of_study};
 use super::figures::carried;
 use super::files::{free_path, write_png};
@@ -65,6 +66,7 @@ impl App {
     /// The same with the settings in the file at `path`. `lost` notices when the graphics device is lost.
     pub fn kept(cc: &CreationContext<'_>, source: Option<Source>, path: Option<PathBuf>, lost: Lost) -> App {
         theme::install(&cc.egui_ctx);
+        cc.egui_ctx.add_plugin(FewerClips);
         let context = cc.egui_ctx.clone();
         if let Some(render) = &cc.wgpu_render_state {
             graphics::install_painter(render);
@@ -80,7 +82,7 @@ impl App {
             _ => egui::Theme::Dark,
         });
         let workspace = settings.as_ref().map(Settings::workspace).unwrap_or_default();
-        let mut state = State::new(Arc::new(move || context.request_repaint()), workspace);
+        let mut state = State::new(Arc::new(move || draw_again(&context)), workspace);
         if let Some(fault) = fault {
             state.complain(&fault);
         }
@@ -322,6 +324,16 @@ impl App {
     }
 }
 
+/// Has another frame drawn. egui draws two for each that is asked for at once, so that things settle. In a page that
+/// draws by software the second one makes the next key wait: whatever has to settle asks for a frame itself.
+fn draw_again(context: &Context) {
+    if cfg!(target_arch = "wasm32") {
+        context.request_repaint_after(Duration::from_millis(1));
+    } else {
+        context.request_repaint();
+    }
+}
+
 impl eframe::App for App {
     fn ui(&mut self, ui: &mut Ui, frame: &mut eframe::Frame) {
         let context = ui.ctx().clone();
@@ -347,7 +359,7 @@ impl eframe::App for App {
             context.copy_text(text.clone());
         }
         if self.show(ui) {
-            context.request_repaint();
+            draw_again(&context);
         }
         if let Some((_, left)) = self.state.view().notice() {
             context.request_repaint_after(left);

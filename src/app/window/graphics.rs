@@ -7,7 +7,7 @@ use eframe::egui_wgpu::{RenderState, WgpuConfiguration, WgpuSetup};
 use eframe::wgpu;
 
 use crate::core::fault::Fault;
-use crate::render::gpu::{Painter, samples};
+use crate::render::gpu::{Painter, is_software};
 
 /// The limits of the device are those of the adapter: large meshes need large buffers.
 pub fn options() -> WgpuConfiguration {
@@ -94,7 +94,7 @@ impl Lost {
 
 /// Installs the painter in egui's renderer.
 pub fn install_painter(render: &RenderState) {
-    let painter = Painter::new(&render.device, render.target_format, samples(&render.adapter.get_info()));
+    let painter = Painter::new(&render.device, render.target_format, is_software(&render.adapter.get_info()));
     render.renderer.write().callback_resources.insert(painter);
 }
 

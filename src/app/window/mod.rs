@@ -32,6 +32,7 @@ mod labels;
 mod layout;
 mod panels;
 mod presses;
+mod clips;
 mod app;
 #[cfg(not(target_arch = "wasm32"))]
 mod opening;

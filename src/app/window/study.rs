@@ -1,10 +1,14 @@
 //! What is learnt in the window: a lesson, part by part, or predictions of what a run does next. Questions are answered
 //! in the view, by choices or as text; the session judges the answers.
 
+#[cfg(target_arch = "wasm32")]
+mod in_words;
 mod learned;
 
 use std::sync::Arc;
 
+#[cfg(target_arch = "wasm32")]
+pub use in_words::in_words;
 pub use learned::Learned;
 
 use super::icons;
@@ -109,6 +113,18 @@ pub struct Try {
     pub judged: Judged,
     /// Whether it was shown and not given.
     pub is_shown: bool,
+}
+
+impl Try {
+    /// How good it was, in a word.
+    pub fn word(&self) -> &'static str {
+        match self.judged.verdict {
+            _ if self.is_shown => "The answer",
+            Verdict::Right => "Yes",
+            Verdict::Partly => "In part",
+            Verdict::Wrong => "No",
+        }
+    }
 }
 
 /// A lesson or a prediction that is under way.

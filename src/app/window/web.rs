@@ -21,7 +21,7 @@ use super::command::{Command, groups};
 use super::files::main_of;
 use super::session::Source;
 use super::state::State;
-use super::study::Study;
+use super::study::{Study, in_words};
 use super::{autosave, graphics, settings, viewport};
 use crate::app::page::Content;
 use crate::core::fault::Fault;
@@ -32,7 +32,7 @@ use crate::core::run::shown::fingerprint;
 thread_local! {
     static RUNNER: RefCell<Option<eframe::WebRunner>> = const { RefCell::new(None) };
     /// What the page was told last of the state.
-    static TOLD: RefCell<[String; 3]> = const { RefCell::new([const { String::new() }; 3]) };
+    static TOLD: RefCell<[String; 4]> = const { RefCell::new([const { String::new() }; 4]) };
 }
 
 /// What the page asks for before the next frame, or why it cannot be had.
@@ -166,10 +166,11 @@ pub fn open_dropped(files: Vec<DroppedFileHandle>, context: &Context) {
 /// Tells the page its title and the state in words, where they have changed.
 pub fn tell(state: &State, title: &str) {
     let [heading, description] = viewport::in_words(state);
-    let told = [title.to_owned(), heading, description];
+    let lesson = state.shown_study().map(in_words).unwrap_or_default();
+    let told = [title.to_owned(), heading, description, lesson];
     TOLD.with_borrow_mut(|before| {
         if *before != told {
-            page::tell(&told[0], &told[1], &told[2]);
+            page::tell(&told[0], &told[1], &told[2], &told[3]);
             *before = told;
         }
     });

@@ -33,7 +33,7 @@ use std::path::{Path, PathBuf};
 pub use equation::Equation;
 pub use go::Go;
 pub use names::{Letter, Name, Names, Point, Set};
-pub use page::page;
+pub use page::{page, part_text};
 pub use parts::{Ask, Part};
 pub use scene::{Decision, Scene, Shown, decisions};
 pub use text::{Block, Piece};

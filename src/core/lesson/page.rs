@@ -35,7 +35,8 @@ pub fn page(lesson: &Lesson, history: &mut History, answers: bool) -> Result<Str
     Ok(page)
 }
 
-fn part_text(part: &Part, scene: &Scene) -> String {
+/// A part of a lesson as text, without its questions: its step, what was done there, its words and equations.
+pub fn part_text(part: &Part, scene: &Scene) -> String {
     let mut text = format!("\n## {}\n", part.heading);
     let _ = writeln!(text, "Step {}: {}", grouped(scene.step), plain(&scene.narration));
     for (what, things) in [("Framed", &scene.frame), ("Lit", &scene.light)] {

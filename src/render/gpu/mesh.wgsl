@@ -30,6 +30,19 @@ fn nowhere() -> vec4<f32> {
     return vec4<f32>(2.0, 2.0, 2.0, 1.0);
 }
 
+// The corner of an item, anticlockwise from 0. Items have four corners each, one after the other.
+fn corner_of(vertex: u32) -> u32 {
+    return vertex % 4u;
+}
+
+// Whether a corner is at the far end of an item, and whether it is on the left of it.
+fn is_far(corner: u32) -> bool {
+    return corner == 1u || corner == 2u;
+}
+fn is_left(corner: u32) -> bool {
+    return corner == 2u || corner == 3u;
+}
+
 // Items on faces are shifted towards the eye by this many points.
 fn pull(points: f32) -> f32 {
     return max(points * view.depth.x, view.depth.y);
@@ -68,9 +81,10 @@ fn face_vertex(@builtin(vertex_index) k: u32, in: FaceIn) -> FaceOut {
     out.colour = in.colour;
     var p = in.p0;
     var n = in.n0;
-    if k == 1u { p = in.p1; n = in.n1; }
-    if k == 2u || k == 4u { p = in.p2; n = in.n2; }
-    if k == 5u { p = in.p3; n = in.n3; }
+    let corner = corner_of(k);
+    if corner == 1u { p = in.p1; n = in.n1; }
+    if corner == 2u { p = in.p2; n = in.n2; }
+    if corner == 3u { p = in.p3; n = in.n3; }
     out.position = view.clip * vec4<f32>(p, 1.0);
     out.normal = view.turn * unfolded(n);
     if in.colour.a == 0.0 { out.position = nowhere(); }
@@ -126,8 +140,8 @@ fn line_vertex(@builtin(vertex_index) k: u32, in: LineIn) -> LineOut {
     let soft = 1.0 / view.pixels;
     let half_width = 0.5 * in.width;
     let cap = select(0.0, half_width + soft, in.room < 0.0);
-    let far = k == 1u || k == 2u || k == 4u;
-    let left = k == 2u || k == 4u || k == 5u;
+    let far = is_far(corner_of(k));
+    let left = is_left(corner_of(k));
     let x = select(-cap, length + cap, far);
     let y = select(-half_width - soft, half_width + soft, left);
     let end = select(a, b, far);
@@ -199,8 +213,8 @@ struct DotOut {
 @vertex
 fn dot_vertex(@builtin(vertex_index) k: u32, in: DotIn) -> DotOut {
     var out: DotOut;
-    let x = select(-1.0, 1.0, k == 1u || k == 2u || k == 4u);
-    let y = select(-1.0, 1.0, k == 2u || k == 4u || k == 5u);
+    let x = select(-1.0, 1.0, is_far(corner_of(k)));
+    let y = select(-1.0, 1.0, is_left(corner_of(k)));
     let room = in.room * view.scale;
     // Dots shrink when the view zooms out.
     let radius = in.radius * select(mix(0.6, 1.0, clamp((room - 6.0) / 8.0, 0.0, 1.0)), 1.0, in.least == 0.0);

@@ -9,7 +9,7 @@ mod target;
 use bytemuck::{Pod, Zeroable};
 use glam::DVec2;
 
-use self::buffer::Patched;
+use self::buffer::{Corners, Patched};
 use self::pipelines::Pipelines;
 use self::target::Target;
 use super::camera::Camera;
@@ -18,9 +18,9 @@ use super::scene::{Dot, Face, Form, Line, Scene};
 
 pub use self::target::read_back;
 
-/// Samples per pixel on an adapter: four, or one on a software renderer.
-pub fn samples(adapter: &wgpu::AdapterInfo) -> u32 {
-    if adapter.device_type == wgpu::DeviceType::Cpu { 1 } else { 4 }
+/// Whether an adapter draws by software.
+pub fn is_software(adapter: &wgpu::AdapterInfo) -> bool {
+    adapter.device_type == wgpu::DeviceType::Cpu
 }
 
 /// How to draw a view.
@@ -130,18 +130,18 @@ impl Lists {
     }
 
     /// Sends the changes to the card.
-    fn set(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, scene: &Scene) {
+    fn set(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, corners: &Corners, scene: &Scene) {
         let generation = scene.generation;
         if self.generation.replace(generation) == Some(generation) {
             return;
         }
-        self.faces.set(device, queue, &scene.faces, generation);
-        self.edges.set(device, queue, &scene.edges, generation);
-        self.dots.set(device, queue, &scene.dots, generation);
-        self.under.set(device, queue, &scene.under, generation);
-        self.boundary.set(device, queue, &scene.boundary, generation);
-        self.over.set(device, queue, &scene.over, generation);
-        self.over_dots.set(device, queue, &scene.over_dots, generation);
+        self.faces.set(device, queue, corners, &scene.faces, generation);
+        self.edges.set(device, queue, corners, &scene.edges, generation);
+        self.dots.set(device, queue, corners, &scene.dots, generation);
+        self.under.set(device, queue, corners, &scene.under, generation);
+        self.boundary.set(device, queue, corners, &scene.boundary, generation);
+        self.over.set(device, queue, corners, &scene.over, generation);
+        self.over_dots.set(device, queue, corners, &scene.over_dots, generation);
     }
 
     fn lines(&self) -> [&Patched<Line>; 4] {
@@ -155,10 +155,10 @@ impl Lists {
 }
 
 impl Painter {
-    /// A painter for targets of the format `window`, with this many samples per pixel (1 or 4).
-    pub fn new(device: &wgpu::Device, window: wgpu::TextureFormat, samples: u32) -> Painter {
+    /// A painter for targets of the format `window`, on a software renderer or on a graphics card.
+    pub fn new(device: &wgpu::Device, window: wgpu::TextureFormat, on_software: bool) -> Painter {
         Painter {
-            pipelines: Pipelines::new(device, window, samples),
+            pipelines: Pipelines::new(device, window, on_software),
             lists: Vec::new(),
             targets: Vec::new(),
             most: device.limits().max_texture_dimension_2d,
@@ -186,7 +186,7 @@ impl Painter {
             self.lists.push([Lists::new(), Lists::new(), Lists::new()]);
         }
         let lists = &mut self.lists[run][which];
-        lists.set(device, queue, scene);
+        lists.set(device, queue, &self.pipelines.corners, scene);
         if self.targets.len() <= index {
             self.targets.resize_with(index + 1, || None);
         }
@@ -213,18 +213,20 @@ impl Painter {
         queue.write_buffer(&target.uniform, 0, bytemuck::bytes_of(&uniform));
         let [r, g, b, _] = view.ground.0.map(|c| f64::from(c) / 255.0);
         let mut pass = target.begin(encoder, wgpu::Color { r, g, b, a: 1.0 });
+        let corners = &self.pipelines.corners;
+        corners.bind(&mut pass);
         pass.set_bind_group(0, &target.view_group, &[]);
         pass.set_pipeline(&self.pipelines.faces);
-        lists.faces.draw(&mut pass);
+        lists.faces.draw(&mut pass, corners);
         if view.hidden > 0.0 {
             pass.set_pipeline(&self.pipelines.hidden);
-            lists.lines().iter().for_each(|lines| lines.draw(&mut pass));
+            lists.lines().iter().for_each(|lines| lines.draw(&mut pass, corners));
         }
         pass.set_pipeline(&self.pipelines.lines);
-        lists.lines().iter().for_each(|lines| lines.draw(&mut pass));
+        lists.lines().iter().for_each(|lines| lines.draw(&mut pass, corners));
         pass.set_pipeline(&self.pipelines.dots);
         for dots in [&lists.dots, &lists.over_dots] {
-            dots.draw(&mut pass);
+            dots.draw(&mut pass, corners);
         }
     }
 

@@ -1,6 +1,7 @@
 //! Shaders and pipelines.
 
 use super::super::scene::{Dot, Face, Line};
+use super::buffer::Corners;
 use wgpu::VertexFormat::{Float32, Float32x2, Float32x3, Snorm16x2, Unorm8x4};
 
 /// Shaders for the mesh and for drawing pictures in the window.
@@ -20,6 +21,8 @@ pub(super) const DOT: [wgpu::VertexFormat; 7] = [Float32x3, Float32, Unorm8x4, U
 pub(super) struct Pipelines {
     /// Samples per pixel.
     pub samples: u32,
+    /// The corners of the items that are drawn.
+    pub corners: Corners,
     pub faces: wgpu::RenderPipeline,
     pub lines: wgpu::RenderPipeline,
     /// The hidden parts of lines.
@@ -31,7 +34,8 @@ pub(super) struct Pipelines {
 }
 
 impl Pipelines {
-    pub fn new(device: &wgpu::Device, window: wgpu::TextureFormat, samples: u32) -> Pipelines {
+    /// For a software renderer, or for a graphics card.
+    pub fn new(device: &wgpu::Device, window: wgpu::TextureFormat, on_software: bool) -> Pipelines {
         let module = |label, text: &'static str| {
             device.create_shader_module(wgpu::ShaderModuleDescriptor {
                 label: Some(label),
@@ -64,16 +68,21 @@ impl Pipelines {
                 entry(1, wgpu::ShaderStages::FRAGMENT, sampler),
             ],
         });
+        let samples = if on_software { 1 } else { 4 };
+        let step = if on_software { wgpu::VertexStepMode::Vertex } else { wgpu::VertexStepMode::Instance };
         let over_mesh = |name, formats: &[wgpu::VertexFormat], size, writes_depth| {
             let seen = Pass { writes_depth, compare: wgpu::CompareFunction::LessEqual, fragment: name };
-            mesh_pipeline(device, &view_layout, &mesh, name, formats, size, seen, samples)
+            mesh_pipeline(device, &view_layout, &mesh, name, formats, size, seen, samples, step)
         };
         let covered = Pass { writes_depth: false, compare: wgpu::CompareFunction::Greater, fragment: "hidden" };
+        let hidden =
+            mesh_pipeline(device, &view_layout, &mesh, "line", &LINE, size_of::<Line>(), covered, samples, step);
         Pipelines {
             samples,
+            corners: Corners::new(device, !on_software),
             faces: over_mesh("face", &FACE, size_of::<Face>(), true),
             lines: over_mesh("line", &LINE, size_of::<Line>(), false),
-            hidden: mesh_pipeline(device, &view_layout, &mesh, "line", &LINE, size_of::<Line>(), covered, samples),
+            hidden,
             dots: over_mesh("dot", &DOT, size_of::<Dot>(), false),
             blit: blit_pipeline(device, &blit_layout, &blit, window),
             view_layout,
@@ -121,6 +130,7 @@ fn mesh_pipeline(
     size: usize,
     pass: Pass,
     samples: u32,
+    step_mode: wgpu::VertexStepMode,
 ) -> wgpu::RenderPipeline {
     let attributes = attributes(formats);
     debug_assert_eq!(formats.iter().map(wgpu::VertexFormat::size).sum::<u64>(), size as u64, "{name}");
@@ -133,7 +143,7 @@ fn mesh_pipeline(
             compilation_options: wgpu::PipelineCompilationOptions::default(),
             buffers: &[Some(wgpu::VertexBufferLayout {
                 array_stride: size as u64,
-                step_mode: wgpu::VertexStepMode::Instance,
+                step_mode,
                 attributes: &attributes,
             })],
         },

@@ -74,8 +74,8 @@ fn shaders_are_valid_and_their_inputs_are_those_of_the_instances() {
 #[test]
 fn faces_lines_and_dots_are_where_they_should_be() {
     let Some((device, queue)) = device() else { return };
-    for samples in [1, 4] {
-        let mut painter = Painter::new(&device, wgpu::TextureFormat::Rgba8Unorm, samples);
+    for on_software in [true, false] {
+        let mut painter = Painter::new(&device, wgpu::TextureFormat::Rgba8Unorm, on_software);
         looks_right(&pixels(&mut painter, &device, &queue, &view(), &scene()));
     }
 }
@@ -111,9 +111,9 @@ fn the_far_side_of_a_sphere_is_hidden_but_for_hidden_lines() {
     let camera =
         Camera::fit_in_space(mesh.nodes().map(|n| mesh.xyz(n)), Bearing::Iso.turn(), DVec2::splat(300.0), 20.0);
     for form in [Form::Flat, Form::Curved] {
-        for samples in [1, 4] {
+        for on_software in [true, false] {
             let draw = |half: f32, hidden: f32| {
-                let mut painter = Painter::new(&device, wgpu::TextureFormat::Rgba8Unorm, samples);
+                let mut painter = Painter::new(&device, wgpu::TextureFormat::Rgba8Unorm, on_software);
                 let mut scene = Scene::default();
                 let (shading, layers) = (Shading::default(), Layers::default());
                 let drawn = Drawn { mesh, changed: &[], shading: &shading, layers, palette: &DARK, form };
@@ -143,7 +143,7 @@ fn the_far_side_of_a_sphere_is_hidden_but_for_hidden_lines() {
             };
             let (front, back) = (draw(1.0, 0.0), draw(-1.0, 0.0));
             assert!(front > 3000, "the near half is drawn: {front}");
-            assert_eq!(back, 0, "{form:?} {samples}: nothing of the far half is");
+            assert_eq!(back, 0, "{form:?} {on_software}: nothing of the far half is");
             assert!(draw(-1.0, 1.0) > 3000, "but for hidden lines");
         }
     }
@@ -152,7 +152,7 @@ fn the_far_side_of_a_sphere_is_hidden_but_for_hidden_lines() {
 #[test]
 fn a_view_that_has_not_changed_sends_and_draws_nothing() {
     let Some((device, queue)) = device() else { return };
-    let mut painter = Painter::new(&device, wgpu::TextureFormat::Rgba8Unorm, 4);
+    let mut painter = Painter::new(&device, wgpu::TextureFormat::Rgba8Unorm, false);
     let mut scene = scene();
     let before = pixels(&mut painter, &device, &queue, &view(), &scene);
     let sent = painter.bytes_sent();

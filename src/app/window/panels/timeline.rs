@@ -3,7 +3,9 @@
 
 mod columns;
 
-use eframe::egui::{self, Align2, Pos2, Rangef, Rect, Response, Role, Sense, Shape, Stroke, Ui, Vec2, WidgetInfo};
+use eframe::egui::{
+    self, Align2, Mesh, Pos2, Rangef, Rect, Response, Role, Sense, Shape, Stroke, Ui, Vec2, WidgetInfo,
+};
 
 use crate::app::window::command::Command;
 use crate::app::window::icons;
@@ -367,17 +369,16 @@ impl Drawing<'_> {
         let head = self.head_column();
         let most = lane.bins.iter().copied().max().unwrap_or(1).max(1) as f32;
         let is_dense = lane.bins.iter().filter(|count| **count > 1).count() > lane.bins.len() / 8;
+        // One mesh without soft edges: there are hundreds of columns.
+        let left = self.painter.round_to_pixel_center(plot.left()) - 0.5 / self.painter.pixels_per_point();
+        let mut columns = Mesh::default();
         for (k, count) in lane.bins.iter().enumerate().filter(|(_, count)| **count > 0) {
             let time = TIMES[usize::from(k as f32 > head + 0.5)];
-            let x = plot.left() + k as f32;
-            if is_dense {
-                let density = 0.2 + 0.8 * *count as f32 / most;
-                let column = Rect::from_min_size(Pos2::new(x, y), Vec2::new(1.0, LANE));
-                self.painter.rect_filled(column, 0.0, ink(colour.faded(time * density)));
-            } else {
-                self.painter.vline(x, y + 2.0..=y + LANE - 2.0, Stroke::new(1.2, ink(colour.faded(time))));
-            }
+            let (density, margin) = if is_dense { (0.2 + 0.8 * *count as f32 / most, 0.0) } else { (1.0, 2.0) };
+            let column = Rect::from_min_size(Pos2::new(left + k as f32, y), Vec2::new(1.0, LANE));
+            columns.add_colored_rect(column.shrink2(Vec2::new(0.0, margin)), ink(colour.faded(time * density)));
         }
+        self.painter.add(columns);
         self.label(y + 0.5 * LANE, &lane.name, &words::grouped(lane.total), self.palette.text);
     }
 

@@ -14,6 +14,7 @@ use web_time::Instant;
 
 use super::{Look, State};
 use crate::app::figure::another_state;
+use crate::app::tasks;
 use crate::app::window::film::FilmWork;
 use crate::app::window::reducing::Reducing;
 use crate::app::window::session::{Moment, SessionNews, Source};
@@ -64,6 +65,10 @@ impl State {
                 pair.other.hear_until(begin);
             }
             self.hear_second();
+        }
+        // What comes of the answer is seen in this frame too: in a page that draws by software each one is slow.
+        if tasks::give_turns(PATIENCE) {
+            self.hear();
         }
     }
 

@@ -7,8 +7,8 @@ extern "C" {
     /// Hands a file to the user, as a download.
     pub fn download(name: &str, bytes: &[u8]);
 
-    /// Shows a state in words: the title of the page, a heading, and a description.
-    pub fn tell(title: &str, heading: &str, description: &str);
+    /// Shows a state in words: the title of the page, a heading, a description, and what a lesson tells and asks.
+    pub fn tell(title: &str, heading: &str, description: &str, lesson: &str);
 
     /// The page of the program as one file, as text.
     #[wasm_bindgen(catch)]

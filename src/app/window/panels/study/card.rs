@@ -140,11 +140,11 @@ fn digits(ui: &Ui) -> String {
 
 /// An answer with its verdict and its reason.
 fn tried(ui: &mut Ui, one: &Try, palette: &Palette) {
-    let (word, colour) = match one.judged.verdict {
-        _ if one.is_shown => ("The answer", palette.holds),
-        Verdict::Right => ("Yes", palette.holds),
-        Verdict::Partly => ("In part", palette.accent),
-        Verdict::Wrong => ("No", palette.broken),
+    let colour = match one.judged.verdict {
+        _ if one.is_shown => palette.holds,
+        Verdict::Right => palette.holds,
+        Verdict::Partly => palette.accent,
+        Verdict::Wrong => palette.broken,
     };
     let mut job = theme::formula(
         &format!("{} {}", sign(one.judged.verdict), one.answer.words()),
@@ -152,7 +152,7 @@ fn tried(ui: &mut Ui, one: &Try, palette: &Palette) {
         ink(colour),
         ink(colour),
     );
-    let why = format!("   **{word}.** {}", one.judged.why.join(" "));
+    let why = format!("   **{}.** {}", one.word(), one.judged.why.join(" "));
     let why = theme::formula(&why, theme::BODY, ink(palette.text), ink(palette.strong));
     for section in &why.sections {
         job.append(&why.text[section.byte_range.start.0..section.byte_range.end.0], 0.0, section.format.clone());

@@ -2,6 +2,7 @@
 
 use std::ops::Deref;
 
+use super::CURVE;
 use crate::app::window::state::State;
 use crate::app::window::words;
 use crate::core::convert::EventKind;
@@ -28,6 +29,25 @@ pub struct Curve {
     pub dots: Vec<(f32, f32)>,
     /// The value at the top.
     pub top: f32,
+}
+
+/// The points of a line, places ascending, that are needed to show each of them within `error` of its value: a line
+/// goes on for as long as one slope serves all that it passes.
+fn simplified(line: &[(f32, f32)], error: f32) -> Vec<(f32, f32)> {
+    let Some(&first) = line.first() else { return Vec::new() };
+    let any = [f32::NEG_INFINITY, f32::INFINITY];
+    let slope = |from: (f32, f32), (place, value): (f32, f32)| (value - from.1) / (place - from.0);
+    let (mut kept, mut from, mut last, mut slopes) = (vec![first], first, first, any);
+    for &next in &line[1..] {
+        if !(slopes[0]..=slopes[1]).contains(&slope(from, next)) {
+            kept.push(last);
+            (from, slopes) = (last, any);
+        }
+        let [low, high] = [next.1 - error, next.1 + error].map(|value| slope(from, (next.0, value)));
+        (slopes, last) = ([slopes[0].max(low), slopes[1].min(high)], next);
+    }
+    kept.extend((last != from).then_some(last));
+    kept
 }
 
 /// Everything that the timeline shows.
@@ -100,6 +120,7 @@ impl Columns {
             }
             _ => curve.top = curve.line.iter().map(|point| point.1).fold(1.0, f32::max),
         }
+        curve.line = simplified(&curve.line, 0.3 * curve.top / CURVE);
         curve
     }
 
@@ -109,5 +130,34 @@ impl Columns {
 
     pub fn curves(&self) -> &[Curve] {
         &self.curves
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The value of a line at a place.
+    fn at(line: &[(f32, f32)], place: f32) -> f32 {
+        let k = line.partition_point(|point| point.0 < place).clamp(1, line.len() - 1);
+        let [a, b] = [line[k - 1], line[k]];
+        a.1 + (b.1 - a.1) * (place - a.0) / (b.0 - a.0)
+    }
+
+    #[test]
+    fn a_simplified_line_shows_each_value_within_the_error() {
+        let wave = |k: i32| (k as f32, 40.0 * libm::sinf(0.01 * k as f32) + (k * 7919 % 13) as f32 * 0.05);
+        let jump = |k: i32| (k as f32, if k < 500 { 3.0 } else { 90.0 });
+        let straight = |k: i32| (k as f32, 2.0 * k as f32);
+        for (line, most) in [(wave as fn(i32) -> (f32, f32), 200), (jump, 4), (straight, 2)] {
+            let line: Vec<_> = (0..1000).map(line).collect();
+            let kept = simplified(&line, 0.5);
+            assert!(kept.len() <= most, "{}", kept.len());
+            for point in &line {
+                assert!((at(&kept, point.0) - point.1).abs() <= 0.501, "{point:?}");
+            }
+        }
+        assert!(simplified(&[], 1.0).is_empty());
+        assert_eq!(simplified(&[(1.0, 2.0)], 1.0), [(1.0, 2.0)]);
     }
 }
