@@ -88,7 +88,7 @@ globalThis.quadfront = {
         element("heading").textContent = heading;
         element("narration").textContent = description;
         // A paragraph of its own for each; what stays is not said again.
-        const paragraphs = lesson ? lesson.split(/\n{2,}/) : [];
+        const paragraphs = lesson.split("\n").filter((line) => line.trim());
         const shown = element("lesson");
         paragraphs.forEach((text, k) => {
             const paragraph = shown.children[k] ?? shown.appendChild(document.createElement("p"));

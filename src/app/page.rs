@@ -16,6 +16,7 @@ use super::{input, output, work};
 use crate::core::case::{DomainSource, ImportOptions, MeshSource, built_in};
 use crate::core::convert::Stop;
 use crate::core::fault::{Fault, FaultKind};
+use crate::core::formats::metric_beside;
 use crate::core::formats::save::{is_file, load, load_text};
 use crate::core::lesson::built_in as tour;
 use crate::core::progress::{Stage, Watch};
@@ -95,9 +96,8 @@ impl Content {
                     .remedy("Save the mesh as .glb, which has all in one file"));
             }
             folder = path.parent().unwrap_or(Path::new("")).to_path_buf();
-            let beside = Some(path.with_extension("sol"))
-                .filter(|sol| path.extension().is_some_and(|own| own.eq_ignore_ascii_case("mesh")) && is_file(sol));
-            for file in std::iter::once(path).chain(sol.as_ref().or(beside.as_ref())) {
+            let sol = sol.clone().or_else(|| metric_beside(path));
+            for file in std::iter::once(path).chain(&sol) {
                 // As the run names it: from the folder of the mesh, or by its whole path.
                 let name = match file.strip_prefix(&folder) {
                     Ok(near) => near.to_path_buf(),

@@ -82,7 +82,7 @@ impl App {
             _ => egui::Theme::Dark,
         });
         let workspace = settings.as_ref().map(Settings::workspace).unwrap_or_default();
-        let mut state = State::new(Arc::new(move || draw_again(&context)), workspace);
+        let mut state = State::new(Arc::new(move || context.request_repaint()), workspace);
         if let Some(fault) = fault {
             state.complain(&fault);
         }
@@ -324,16 +324,6 @@ impl App {
     }
 }
 
-/// Has another frame drawn. egui draws two for each that is asked for at once, so that things settle. In a page that
-/// draws by software the second one makes the next key wait: whatever has to settle asks for a frame itself.
-fn draw_again(context: &Context) {
-    if cfg!(target_arch = "wasm32") {
-        context.request_repaint_after(Duration::from_millis(1));
-    } else {
-        context.request_repaint();
-    }
-}
-
 impl eframe::App for App {
     fn ui(&mut self, ui: &mut Ui, frame: &mut eframe::Frame) {
         let context = ui.ctx().clone();
@@ -359,7 +349,7 @@ impl eframe::App for App {
             context.copy_text(text.clone());
         }
         if self.show(ui) {
-            draw_again(&context);
+            context.request_repaint();
         }
         if let Some((_, left)) = self.state.view().notice() {
             context.request_repaint_after(left);

@@ -32,7 +32,7 @@ impl Plugin for FewerClips {
 /// Adds what can be seen of a shape.
 fn unclip(clipped: ClippedShape, shapes: &mut Vec<ClippedShape>) {
     let ClippedShape { mut clip_rect, mut shape, transform_after_tessellation } = clipped;
-    if transform_after_tessellation != TSTransform::IDENTITY {
+    if transform_after_tessellation != TSTransform::IDENTITY || matches!(shape, Shape::Callback(_)) {
         shapes.push(ClippedShape { clip_rect, shape, transform_after_tessellation });
         return;
     }
@@ -41,10 +41,6 @@ fn unclip(clipped: ClippedShape, shapes: &mut Vec<ClippedShape>) {
             for shape in parts.drain(..) {
                 unclip(ClippedShape { clip_rect, shape, transform_after_tessellation }, shapes);
             }
-            return;
-        }
-        Shape::Callback(_) => {
-            shapes.push(ClippedShape { clip_rect, shape, transform_after_tessellation });
             return;
         }
         Shape::Rect(rect) if ends_at_pixels(rect) => {

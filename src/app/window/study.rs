@@ -16,7 +16,7 @@ use super::session::{Posed, Taught};
 use crate::core::case::built_in::FIGURES;
 use crate::core::lesson::{Decision, Lesson, Things, built_in};
 use crate::core::mesh::{Mesh, NodeId};
-use crate::core::question::{Answer, Drawn, Judged, Kind, Rule, Score, Series, Verdict};
+use crate::core::question::{Answer, Drawn, Hint, Judged, Kind, Rule, Score, Series, Verdict};
 use crate::render::scene::Outlined;
 
 /// Something that is done while one learns.
@@ -194,6 +194,11 @@ impl Study {
         self.taught.as_ref()?.posed.get(self.question).filter(|_| !self.is_over)
     }
 
+    /// The hints to it that were taken.
+    pub fn taken_hints(&self) -> &[Hint] {
+        self.posed().map_or(&[], |posed| &posed.hints[..self.hints.min(posed.hints.len())])
+    }
+
     /// Whether the question at hand is answered: rightly, or by showing the answer.
     pub fn is_answered(&self) -> bool {
         self.tries.last().is_some_and(|last| last.is_shown || last.judged.verdict == Verdict::Right)
@@ -251,10 +256,9 @@ impl Study {
             let sign = sign(one.judged.verdict);
             Some((pointed(&one.answer)?, format!("{sign} {}", one.answer.words()), one.judged.verdict))
         });
-        let hints = self.posed().into_iter().flat_map(|posed| &posed.hints[..self.hints.min(posed.hints.len())]);
         // The last hint at an edge stands there.
         let mut labels: Vec<(Outlined, String, Verdict)> = answers.collect();
-        for (ends, text) in hints.rev().flat_map(|hint| &hint.labels) {
+        for (ends, text) in self.taken_hints().iter().rev().flat_map(|hint| &hint.labels) {
             let edge = Outlined::Edge(*ends);
             if !labels.iter().any(|label| label.0 == edge) {
                 labels.push((edge, text.clone(), Verdict::Partly));

@@ -1,7 +1,7 @@
 //! The mesh formats, and the entry points for reading and writing meshes.
 
 use std::io::{self, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::gltf;
 use super::inp;
@@ -91,8 +91,15 @@ impl Format {
     }
 }
 
+/// The file with the metric of a mesh, where none is named: for a `.mesh` the `.sol` of the same name in the same
+/// folder, if it exists.
+pub fn metric_beside(path: &Path) -> Option<PathBuf> {
+    let is_medit = Format::from_path(path).is_ok_and(|format| format == Format::Medit);
+    Some(path.with_extension("sol")).filter(|sol| is_medit && save::is_file(sol))
+}
+
 /// Reads a mesh in the format of its extension. The metric comes from the file `sol` if given, for a mesh of any
-/// format; otherwise, for a `.mesh`, from the `.sol` of the same name in the same folder if it exists.
+/// format; otherwise from the one [beside it](metric_beside).
 ///
 /// # Errors
 /// A fault with file, line and remedy.
@@ -109,10 +116,8 @@ pub fn read_mesh_watched(path: &Path, sol: Option<&Path>, watch: &mut dyn Watch)
     let format = Format::from_path(path)?;
     let bytes = load_watched(path, &pace)?;
     let mut mesh = read_in(&path.display().to_string(), &bytes, format, path.parent(), &pace)?;
-    let beside = path.with_extension("sol");
-    let sol = sol.or_else(|| (format == Format::Medit && save::is_file(&beside)).then_some(beside.as_path()));
-    if let Some(sol) = sol {
-        let bytes = load_watched(sol, &pace)?;
+    if let Some(sol) = sol.map(Path::to_path_buf).or_else(|| metric_beside(path)) {
+        let bytes = load_watched(&sol, &pace)?;
         let metric = medit::read_metric_watched(&sol.display().to_string(), &bytes, mesh.points.len(), &pace);
         mesh.metric = Some(metric.map_err(|fault| fault.of_kind(FaultKind::Syntax))?);
     }

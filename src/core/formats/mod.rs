@@ -13,4 +13,4 @@ mod gltf;
 mod inp;
 pub mod format;
 
-pub use format::{Format, WriteOptions};
+pub use format::{Format, WriteOptions, metric_beside};

@@ -4,14 +4,15 @@ use super::Study;
 use crate::core::lesson::part_text;
 use crate::core::run::explain::plain;
 
-/// What is told, asked and answered now, in paragraphs: the part of the lesson, the question, what can be answered, and
-/// the answers and hints so far.
+/// What is told, asked and answered now, a paragraph a line, without marks: the part of the lesson, the question, what
+/// can be answered, and the answers and hints so far.
 pub fn in_words(study: &Study) -> String {
     let mut said = Vec::new();
     if let Some((lesson, part)) = study.lesson() {
         let scene = study.taught.as_ref().and_then(|taught| taught.scene.as_ref());
         if let (Some(part), Some(scene)) = (lesson.parts.get(part), scene) {
-            said.push(format!("{}\n{}", lesson.title, part_text(part, scene).trim()));
+            said.push(lesson.title.clone());
+            said.push(part_text(part, scene).replace("## ", ""));
         }
     }
     if let Some(posed) = study.posed() {
@@ -23,10 +24,10 @@ pub fn in_words(study: &Study) -> String {
         for one in &study.tries {
             said.push(format!("{}: {}. {}", one.word(), one.answer.words(), one.judged.why.join(" ")));
         }
-        for hint in &posed.hints[..study.hints.min(posed.hints.len())] {
+        for hint in study.taken_hints() {
             said.push(format!("Hint: {}", hint.text));
         }
     }
     said.extend(study.remark.clone());
-    plain(&said.join("\n\n").replace("**", ""))
+    plain(&said.join("\n").replace('*', ""))
 }

@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 use super::text;
 use crate::core::case::{DomainSource, MeshSource, Parameters};
 use crate::core::fault::{Fault, FaultKind};
-use crate::core::formats::save::{is_file, load};
+use crate::core::formats::metric_beside;
+use crate::core::formats::save::load;
 use crate::core::kernel::Fingerprint;
 use crate::core::run::Run;
 
@@ -37,10 +38,7 @@ impl InputFiles {
             let absolute = std::path::absolute(path).unwrap_or_else(|_| path.to_path_buf());
             Ok(InputFile { fingerprint: Fingerprint::of(&load(path)?), path: absolute })
         };
-        // A Medit mesh uses the .sol of the same name if it exists, so that file belongs to the run too.
-        let beside = Some(path.with_extension("sol"))
-            .filter(|sol| path.extension().is_some_and(|e| e.eq_ignore_ascii_case("mesh")) && is_file(sol));
-        let sol = sol.clone().or(beside);
+        let sol = sol.clone().or_else(|| metric_beside(path));
         Ok(InputFiles { mesh: Some(input(path)?), sol: sol.map(|sol| input(&sol)).transpose()? })
     }
 }

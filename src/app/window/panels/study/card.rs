@@ -62,7 +62,7 @@ fn question(
     ui.add_space(8.0);
     ScrollArea::vertical().max_height(MOST).stick_to_bottom(true).show(ui, |ui| {
         study.tries.iter().for_each(|one| tried(ui, one, palette));
-        for hint in &posed.hints[..study.hints.min(posed.hints.len())] {
+        for hint in study.taken_hints() {
             let text = format!("Hint: {}", hint.text);
             ui.add(Label::new(theme::formula(&text, theme::BODY, ink(palette.text), ink(palette.strong))).wrap());
         }
