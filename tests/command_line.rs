@@ -293,6 +293,27 @@ fn an_invalid_mesh_is_exit_1_and_an_unreadable_one_exit_2() {
 }
 
 #[test]
+fn what_a_mesh_file_has_and_the_result_does_not_carry_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = "MeshVersionFormatted 2\nDimension 3\nVertices 5\n0 0 0 0\n1 0 0 0\n1 1 0 0\n0 1 0 0\n0 0 1 0\n\
+                Triangles 2\n1 2 3 0\n1 3 4 0\nTetrahedra 2\n1 2 3 5 0\n1 3 4 5 0\nEnd\n";
+    std::fs::write(folder.path().join("a.mesh"), text).unwrap();
+    let told = "not read: tetrahedron (2 times)";
+    for line in [["convert", "a.mesh", "--report", "a.json"].as_slice(), &["background", "a.mesh"]] {
+        let (code, out, err) = said(&run(line, folder.path()));
+        assert_eq!(code, 0, "{err}");
+        assert!(out.contains("  not read         tetrahedron (2 times)\n"), "{out}");
+    }
+    let (_, out, _) = said(&run(&["check", "a.mesh", "--report", "b.json"], folder.path()));
+    assert!(out.contains(&format!("{told}\n")), "{out}");
+    for (report, key) in [("a.json", "repairs"), ("b.json", "not_read")] {
+        let text = std::fs::read_to_string(folder.path().join(report)).unwrap();
+        let report: serde_json::Value = serde_json::from_str(&text).unwrap();
+        assert!(report[key].as_array().unwrap().contains(&told.into()), "{text}");
+    }
+}
+
+#[test]
 fn whatever_is_wrong_is_one_line_with_exit_2() {
     let folder = tempfile::tempdir().unwrap();
     let write = |name: &str, text: &[u8]| std::fs::write(folder.path().join(name), text).unwrap();

@@ -54,7 +54,7 @@ pub(super) fn check(arguments: &CheckArguments) -> Result<ExitCode, Fault> {
 }
 
 fn facts(name: &str, found: &Soundness) -> String {
-    format!(
+    let mut text = format!(
         "{name}: {} quadrilaterals, {} triangles, {} nodes, {} edges\n\
          {} boundary edges in {} loops, {} pieces, Euler characteristic {}, area {}\n",
         found.quads,
@@ -66,5 +66,10 @@ fn facts(name: &str, found: &Soundness) -> String {
         found.components,
         found.euler,
         found.area
-    )
+    );
+    for told in &found.not_read {
+        text.push_str(told);
+        text.push('\n');
+    }
+    text
 }

@@ -35,7 +35,7 @@ pub(super) struct Triangles {
     pub file: MeshFile,
     /// Its statistics.
     pub statistics: Statistics,
-    /// Repairs made to an imported mesh.
+    /// Repairs made to an imported mesh, and what of its file is not read.
     pub repairs: Vec<String>,
     /// What the boundary makes of the sizes that are asked for.
     pub spacing: Spacing,

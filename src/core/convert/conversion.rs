@@ -26,7 +26,7 @@ pub struct Converted {
     pub triangles: usize,
     /// What the adaptation of the background did.
     pub adapted: Adapted,
-    /// Repairs of a given mesh, in words.
+    /// Repairs of a given mesh, and what of its file is not read, in words.
     pub repairs: Vec<String>,
     /// What the boundary makes of the sizes that are asked for.
     pub spacing: Spacing,

@@ -37,7 +37,7 @@ pub struct Background {
     pub names: Names,
     /// Counts of the adaptation; zero for a given mesh.
     pub adapted: Adapted,
-    /// Repairs of a given mesh, as readable phrases.
+    /// Repairs of a given mesh, and what of its file is not read, as readable phrases.
     pub repairs: Vec<String>,
     /// What the boundary makes of the sizes that are asked for.
     pub spacing: Spacing,

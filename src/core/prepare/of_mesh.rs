@@ -46,7 +46,8 @@ pub(super) fn from_mesh(
     if !file.is_plane() || taking.used == Some(MeshUse::Shape) {
         return from_surface(case, &file, &place, taking, watch);
     }
-    let imported = import(&file, case.split_odd).map_err(|fault| fault.at(place.clone()))?;
+    let mut imported = import(&file, case.split_odd).map_err(|fault| fault.at(place.clone()))?;
+    imported.repairs.append(&mut file.not_read());
     let set = &imported.set;
     allow_triangles(set.triangles.len(), watch)?;
     let mut fields = Vec::new();
@@ -133,6 +134,7 @@ fn from_surface(
     made.names.further.lines = file.further_lines();
     made.names.further.faces = further;
     repairs.append(&mut made.repairs);
+    repairs.append(&mut file.not_read());
     Ok(Background { repairs, ..made })
 }
 

@@ -22,6 +22,7 @@ use crate::core::fault::Fault;
 use crate::core::kernel::number::{counted, grouped, size};
 use crate::core::prepare::Spacing;
 use crate::core::progress::Stage;
+use crate::core::soup::NOT_READ;
 
 /// The report of a conversion.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -51,7 +52,7 @@ pub struct Report {
     pub symmetry: Option<SymmetryRecord>,
     /// The share of the last resort.
     pub last_resort: LastResort,
-    /// Repairs of a given mesh, as readable phrases.
+    /// Repairs of a given mesh, and what of its file is not read, as readable phrases.
     pub repairs: Vec<String>,
     /// What the boundary makes of the sizes that are asked for; left out where it makes nothing of them.
     #[serde(skip_serializing_if = "Spacing::is_plain")]
@@ -241,8 +242,11 @@ fn rows_of_work(text: &mut String, repairs: &[String], spacing: &Spacing, timing
     for phrase in spacing.phrases() {
         row(text, "spacing", &phrase);
     }
-    for repair in repairs {
-        row(text, "repaired", repair);
+    for told in repairs {
+        match told.strip_prefix(NOT_READ) {
+            Some(what) => row(text, "not read", what),
+            None => row(text, "repaired", told),
+        }
     }
     if !timing.is_empty() {
         row(text, "time", &times(timing));

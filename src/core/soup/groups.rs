@@ -143,15 +143,20 @@ impl MeshFile {
 
     /// Dimension, tag and name of every group: also of those that the file gives no name.
     fn named_groups(&self) -> Vec<(u8, u32, String)> {
+        let front = |group: &(u8, u32)| group.0 == 1 && self.group_name(1, group.1) == Some(FRONT);
+        let name = |(dimension, tag): (u8, u32)| (dimension, tag, self.named(dimension, tag).name);
+        self.groups_in_use().into_iter().filter(|group| !front(group)).map(name).collect()
+    }
+
+    /// Dimension and tag of every group that has members, ascending.
+    pub(super) fn groups_in_use(&self) -> Vec<(u8, u32)> {
         let faces = [&self.triangle_tags, &self.quad_tags, &self.polygon_tags].into_iter().flatten();
         let tags = self.line_tags.iter().map(|&tag| (1, tag)).chain(faces.map(|&tag| (2, tag)));
         let members = self.members.iter().map(|members| (members.dimension, members.tag));
         let mut all: Vec<(u8, u32)> = tags.chain(members).filter(|group| group.1 != 0).collect();
         all.sort_unstable();
         all.dedup();
-        let front = |group: &(u8, u32)| group.0 == 1 && self.group_name(1, group.1) == Some(FRONT);
-        let name = |(dimension, tag): (u8, u32)| (dimension, tag, self.named(dimension, tag).name);
-        all.into_iter().filter(|group| !front(group)).map(name).collect()
+        all
     }
 
     /// A group with its name: that of the file, or what it is and its tag.

@@ -52,6 +52,15 @@ pub struct Data {
     pub values: Vec<f64>,
 }
 
+/// Content of a file, other than elements, that is not read.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Omitted {
+    /// What it is ("keyword").
+    pub kind: String,
+    /// The names of what is of this kind, with their counts ("*MATERIAL", 2); empty where the kind says all.
+    pub names: Vec<(String, usize)>,
+}
+
 /// Points and elements of a surface mesh. Indices are zero-based; whoever builds this has checked them against
 /// `points`.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -90,6 +99,8 @@ pub struct MeshFile {
     pub texture: Option<Texture>,
     /// Element types in the file that are not read, with their counts ("tetrahedron", 12).
     pub skipped: Vec<(String, usize)>,
+    /// What else of the file is not read.
+    pub omitted: Vec<Omitted>,
     /// How the file numbers its points and elements.
     pub counting: Counting,
 }

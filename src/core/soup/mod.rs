@@ -9,10 +9,12 @@ mod polygons;
 pub(in crate::core) mod weld;
 pub mod soundness;
 mod repairs;
+mod not_read;
 
 pub use counting::{Count, Counting, Elements};
 pub use groups::Ignored;
-pub use mesh_file::{Data, Group, Members, MeshFile, Texture};
+pub use mesh_file::{Data, Group, Members, MeshFile, Omitted, Texture};
+pub use not_read::NOT_READ;
 pub(in crate::core) use repairs::Repair;
 pub use soundness::{Allow, Defect, Soundness};
 pub(in crate::core) use weld::Welder;

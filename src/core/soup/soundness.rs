@@ -121,6 +121,8 @@ pub struct Soundness {
     pub planar: bool,
     /// Area; for a curved quadrilateral, half the length of its diagonals' cross product.
     pub area: f64,
+    /// What the file has and is not read ([`MeshFile::not_read`]).
+    pub not_read: Vec<String>,
     /// The defects, by kind.
     pub findings: Vec<Finding>,
 }
@@ -135,6 +137,7 @@ pub fn examine(mesh: &MeshFile) -> Soundness {
         nodes: mesh.points.len() as u64,
         triangles: mesh.triangles.len() as u64,
         quads: mesh.quads.len() as u64,
+        not_read: mesh.not_read(),
         ..Soundness::default()
     };
     let faces = Faces::of(mesh);

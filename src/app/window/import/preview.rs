@@ -44,7 +44,7 @@ pub struct Loaded {
     pub regions: usize,
     /// Whether it has named groups.
     pub has_groups: bool,
-    /// What was repaired, and what was skipped.
+    /// What was repaired, and what was not read.
     pub repairs: Vec<String>,
     /// The mean length of its edges.
     pub mean_edge: f64,
@@ -172,8 +172,7 @@ fn load(path: &Path, ignored: &Ignored, voice: &mut Voice) -> Result<Loaded, Fau
     let place = |fault: Fault| if fault.is_stop() { fault } else { fault.at(path.display().to_string()) };
     file.ignore_groups(ignored).map_err(place)?;
     let (is_plane, has_metric, has_groups) = (file.is_plane(), file.metric.is_some(), !file.groups.is_empty());
-    let skipped: Vec<String> =
-        file.skipped.iter().map(|(kind, count)| format!("not read: {kind} ({count} times)")).collect();
+    let mut not_read = file.not_read();
     let (mut found, fault) = match repair(&file, voice) {
         Ok(found) => (found, None),
         Err(fault) if fault.is_stop() => return Err(fault),
@@ -188,7 +187,7 @@ fn load(path: &Path, ignored: &Ignored, voice: &mut Voice) -> Result<Loaded, Fau
         }
     };
     drop(file);
-    found.repairs.extend(skipped);
+    found.repairs.append(&mut not_read);
     let edges = Edges::of(&found.mesh.triangles);
     voice.cancel.check()?;
     let census = Census::of(&found.mesh, &edges);
