@@ -1,4 +1,5 @@
-//! The scanner under all readers: words and numbers from a buffer of bytes, with the line number in every fault.
+//! The scanner under all readers: words and numbers from a buffer of bytes, with the line number in every fault. Lines
+//! end with LF, CR LF or CR.
 //!
 //! Nothing here allocates. A count declared by a file is checked against the remaining bytes before memory is reserved
 //! for it, so that a wrong header gives an error instead of exhausting memory.
@@ -114,7 +115,9 @@ impl<'a> Scanner<'a> {
         if self.binary {
             return Fault::new(what).at(format!("{}, byte {mark}", self.name));
         }
-        let line = 1 + self.bytes[..mark.min(self.bytes.len())].iter().filter(|&&b| b == b'\n').count();
+        let before = &self.bytes[..mark.min(self.bytes.len())];
+        let ends = before.iter().zip(before.iter().skip(1).chain([&0]));
+        let line = 1 + ends.filter(|(b, next)| **b == b'\n' || (**b == b'\r' && **next != b'\n')).count();
         Fault::new(what).at(format!("{}, line {line}", self.name))
     }
 
@@ -128,7 +131,7 @@ impl<'a> Scanner<'a> {
             if byte.is_ascii_whitespace() {
                 self.at += 1;
             } else if Some(byte) == self.comment {
-                self.at += self.bytes[self.at..].iter().position(|&b| b == b'\n').unwrap_or(self.left());
+                self.at += self.bytes[self.at..].iter().position(ends_line).unwrap_or(self.left());
             } else {
                 break;
             }
@@ -158,9 +161,9 @@ impl<'a> Scanner<'a> {
             return None;
         }
         let rest = &self.bytes[self.at..];
-        let long = rest.iter().position(|&b| b == b'\n').unwrap_or(rest.len());
+        let long = rest.iter().position(ends_line).unwrap_or(rest.len());
         self.last = self.at;
-        self.at += (long + 1).min(rest.len());
+        self.at += (long + if rest[long..].starts_with(b"\r\n") { 2 } else { 1 }).min(rest.len());
         Some(rest[..long].trim_ascii())
     }
 
@@ -310,6 +313,10 @@ impl<'a> Scanner<'a> {
     }
 }
 
+fn ends_line(byte: &u8) -> bool {
+    matches!(byte, b'\n' | b'\r')
+}
+
 /// A word of a file for a message: at most 40 characters, without control characters.
 pub fn shown(word: &[u8]) -> String {
     let text = String::from_utf8_lossy(&word[..word.len().min(160)]);
@@ -376,6 +383,20 @@ mod tests {
         assert_eq!(s.peek(), Some(&b"x"[..]));
         assert_eq!(s.line(), Some(&b"x"[..]));
         assert_eq!(s.line(), None);
+    }
+
+    #[test]
+    fn lines_end_with_lf_cr_or_both() {
+        for end in ["\n", "\r\n", "\r"] {
+            let text = ["one # two", "", "# three", "4x", ""].join(end);
+            let mut s = Scanner::new("a", text.as_bytes());
+            assert_eq!(s.line(), Some(&b"one # two"[..]));
+            assert_eq!(s.line(), Some(&b""[..]));
+            let mut s = Scanner::new("a", text.as_bytes()).with_comments(b'#');
+            assert_eq!(s.word(), Some(&b"one"[..]));
+            assert!(s.integer("a count").unwrap_err().to_string().starts_with("a, line 4: "), "{end:?}");
+            assert_eq!(s.word(), None);
+        }
     }
 
     #[test]
