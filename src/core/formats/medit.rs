@@ -1,7 +1,8 @@
 //! Medit's text formats: meshes (`.mesh`) and their metrics (`.sol`).
 //!
 //! Deliberately absent: the binary formats (`.meshb`, `.solb`), rejected by [`Format`](super::format::Format); sections
-//! other than vertices, required vertices, edges, triangles and quadrilaterals (corners, ridges) are ignored.
+//! other than vertices, required vertices, edges, triangles and quadrilaterals (corners, ridges), which are told as not
+//! read.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::{self, Write};
@@ -73,6 +74,7 @@ pub fn read(name: &str, bytes: &[u8], pace: &dyn Pace) -> Result<MeshFile, Fault
                         .fault(format!("Elements of higher order ({}) are not supported", shown(word)))
                         .remedy("Save the mesh with elements of order 1"));
                 }
+                mesh.omit("section", &shown(word));
                 to_keyword(&mut s);
             }
             _ => {

@@ -149,6 +149,11 @@ impl<'a> Scanner<'a> {
         (long > 0).then(|| &rest[..long])
     }
 
+    /// Moves back by one byte.
+    pub fn step_back(&mut self) {
+        self.at -= 1;
+    }
+
     /// The next word without moving.
     pub fn peek(&self) -> Option<&'a [u8]> {
         self.clone().word()
@@ -165,6 +170,16 @@ impl<'a> Scanner<'a> {
         self.last = self.at;
         self.at += (long + if rest[long..].starts_with(b"\r\n") { 2 } else { 1 }).min(rest.len());
         Some(rest[..long].trim_ascii())
+    }
+
+    /// The next line that is not blank, likewise.
+    pub fn filled_line(&mut self) -> Option<&'a [u8]> {
+        loop {
+            let line = self.line()?;
+            if !line.is_empty() {
+                return Some(line);
+            }
+        }
     }
 
     /// A scanner over everything before the next `end` (or the whole rest); this scanner moves there.
@@ -201,7 +216,8 @@ impl<'a> Scanner<'a> {
         false
     }
 
-    fn ended(&self, expected: &str) -> Fault {
+    /// The fault of a file that ends where `expected` must be.
+    pub fn ended(&self, expected: &str) -> Fault {
         self.fault_at(self.bytes.len(), format!("Expected {expected}, found the end of the file")).remedy(TRUNCATED)
     }
 

@@ -1,9 +1,16 @@
 //! What a file has and the mesh made of it does not carry, in words.
 
-use super::mesh_file::{Data, Group, MeshFile, Omitted};
+use super::mesh_file::{Group, MeshFile, Omitted};
 
 /// How the words of [`MeshFile::not_read`] begin.
 pub const NOT_READ: &str = "not read: ";
+
+/// Kinds of content that readers of several formats leave out.
+pub(in crate::core) const POINT_DATA: &str = "point data";
+/// Likewise.
+pub(in crate::core) const CELL_DATA: &str = "cell data";
+/// Likewise.
+pub(in crate::core) const EMPTY_GROUP: &str = "group without members:";
 
 /// Kinds, and names of a kind, that are listed; the others are counted.
 const LISTED: [usize; 2] = [10, 5];
@@ -18,37 +25,19 @@ impl MeshFile {
 
     /// Likewise, for something that is there `count` times.
     pub(in crate::core) fn omit_many(&mut self, kind: &str, name: &str, count: usize) {
-        let at = self.omitted.iter().position(|known| known.kind == kind).unwrap_or(self.omitted.len());
-        if at == self.omitted.len() {
-            self.omitted.push(Omitted { kind: kind.to_owned(), names: Vec::new() });
-        }
-        let names = &mut self.omitted[at].names;
-        let name: String = name.chars().filter(|c| !c.is_control()).take(40).collect();
-        match names.iter().position(|known| known.0 == name) {
-            Some(at) => names[at].1 += count,
-            None if names.len() < KEPT => names.push((name, count)),
-            None => {}
-        }
+        note(&mut self.omitted, kind, name, count);
     }
 
     /// A phrase for each kind of content that the result of a conversion does not carry, such as "not read: tetrahedron
     /// (12 times)": elements, then what the reader has left out, data at points and elements, and groups without
     /// members. Of many kinds or names, the first ones and how many more there are.
     pub fn not_read(&self) -> Vec<String> {
+        let mut omitted = self.omitted.clone();
+        self.point_data.iter().for_each(|data| note(&mut omitted, POINT_DATA, &data.name, 1));
+        self.element_data.iter().for_each(|data| note(&mut omitted, CELL_DATA, &data.name, 1));
+        self.empty_groups().iter().for_each(|name| note(&mut omitted, EMPTY_GROUP, name, 1));
         let mut kinds: Vec<String> = self.skipped.iter().map(|(kind, count)| times(kind, *count)).collect();
-        kinds.extend(self.omitted.iter().map(|Omitted { kind, names }| {
-            let names: Vec<String> = names.iter().map(|(name, count)| times(name, *count)).collect();
-            listing(kind, &names)
-        }));
-        let mut unused = |kind: &str, names: Vec<String>| {
-            if !names.is_empty() {
-                kinds.push(listing(kind, &names));
-            }
-        };
-        let names = |data: &[Data]| data.iter().map(|data| data.name.clone()).collect();
-        unused("point data", names(&self.point_data));
-        unused("cell data", names(&self.element_data));
-        unused("group without members:", self.empty_groups());
+        kinds.extend(omitted.iter().map(listing));
         let more = kinds.len().saturating_sub(LISTED[0]);
         kinds.truncate(LISTED[0]);
         if more > 0 {
@@ -71,21 +60,36 @@ fn times(what: &str, count: usize) -> String {
 }
 
 /// "keyword *STEP, *STATIC and *OUTPUT (4 times)"; of many names, the first ones and how many more there are.
-fn listing(kind: &str, names: &[String]) -> String {
-    let listed = &names[..names.len().min(LISTED[1])];
-    match (listed, names.len() - listed.len()) {
-        ([], _) => kind.to_owned(),
-        ([first @ .., last], 0) if !first.is_empty() => format!("{kind} {} and {last}", first.join(", ")),
-        (listed, 0) => format!("{kind} {}", listed.join(", ")),
+fn listing(Omitted { kind, names }: &Omitted) -> String {
+    let listed: Vec<String> = names.iter().take(LISTED[1]).map(|(name, count)| times(name, *count)).collect();
+    match (&listed[..], names.len() - listed.len()) {
+        ([], _) => kind.clone(),
+        ([name], 0) => format!("{kind} {name}"),
+        ([first @ .., last], 0) => format!("{kind} {} and {last}", first.join(", ")),
         (listed, _) if names.len() == KEPT => format!("{kind} {} and many more", listed.join(", ")),
         (listed, more) => format!("{kind} {} and {more} more", listed.join(", ")),
+    }
+}
+
+/// Adds to what is left out.
+fn note(omitted: &mut Vec<Omitted>, kind: &str, name: &str, count: usize) {
+    let at = omitted.iter().position(|known| known.kind == kind).unwrap_or(omitted.len());
+    if at == omitted.len() {
+        omitted.push(Omitted { kind: kind.to_owned(), names: Vec::new() });
+    }
+    let names = &mut omitted[at].names;
+    let name: String = name.chars().filter(|c| !c.is_control()).take(40).collect();
+    match names.iter().position(|known| known.0 == name) {
+        Some(at) => names[at].1 += count,
+        None if names.len() < KEPT => names.push((name, count)),
+        None => {}
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::core::soup::Members;
+    use crate::core::soup::{Data, Members};
 
     #[test]
     fn what_is_not_read_is_told_by_kind_and_never_at_length() {

@@ -5,7 +5,7 @@ use super::read::Reader;
 use crate::core::fault::Fault;
 use crate::core::formats::numbering::Numbering;
 use crate::core::kernel::Metric3;
-use crate::core::soup::Data;
+use crate::core::soup::{CELL_DATA, Data, POINT_DATA};
 
 impl Reader<'_> {
     /// Reads $NodeData or $ElementData.
@@ -16,7 +16,7 @@ impl Reader<'_> {
         let names = scanner.count("a number of names", 2)?;
         scanner.line();
         for place in 0..names {
-            let line = scanner.line().unwrap_or_default();
+            let line = scanner.filled_line().unwrap_or_default();
             if place == 0 {
                 name = String::from_utf8_lossy(line).trim_matches('"').to_string();
             }
@@ -38,6 +38,7 @@ impl Reader<'_> {
         let is_metric = of_nodes && components == 9 && name == METRIC;
         // Incomplete data is skipped, before memory is reserved by a possibly wrong count.
         if total == 0 || (count as usize) < total || !(components == 1 || is_metric) {
+            self.file.omit(if of_nodes { POINT_DATA } else { CELL_DATA }, &name);
             return self.skip(section);
         }
         let components = components as usize;
@@ -75,6 +76,8 @@ impl Reader<'_> {
         } else if missing.is_none() {
             let data = Data { name, values };
             if of_nodes { self.file.point_data.push(data) } else { self.file.element_data.push(data) }
+        } else {
+            self.file.omit(if of_nodes { POINT_DATA } else { CELL_DATA }, &name);
         }
         self.end(section)
     }

@@ -53,7 +53,7 @@ impl Input<'_> {
 
     /// A count as text on its own line, as in version 2, also in binary files.
     pub fn count_line(&mut self, text: usize, binary: usize, what: &str) -> Result<usize, Fault> {
-        let line = self.scanner.line().unwrap_or_default();
+        let line = self.scanner.filled_line().unwrap_or_default();
         let count = parse_whole(line).ok_or_else(|| self.scanner.unexpected(line, what))?;
         self.fits(count, text, binary, what)
     }

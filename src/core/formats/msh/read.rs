@@ -105,7 +105,11 @@ impl Reader<'_> {
                 return Err(fault.remedy("Save it without them (in Gmsh: Mesh.SaveParametric = 0), or as MSH 4.1"));
             }
             (b"NodeData" | b"ElementData", _) if self.has_elements => return self.data(section),
-            _ => return self.skip(section),
+            (b"Comments", _) => return self.skip(section),
+            _ => {
+                self.file.omit("section", &format!("${}", shown(section)));
+                return self.skip(section);
+            }
         }
         self.end(section)
     }
@@ -179,8 +183,10 @@ impl Reader<'_> {
             let Ok(tag) = u32::try_from(tag) else {
                 return Err(scanner.fault(format!("The physical tag {tag} is too large")));
             };
-            if dimension < 3 {
-                let name = String::from_utf8_lossy(name).into_owned();
+            let name = String::from_utf8_lossy(name).into_owned();
+            if dimension >= 3 {
+                self.file.omit("group of volumes", &format!("\"{name}\""));
+            } else {
                 self.file.groups.push(Group { dimension: dimension as u8, tag, name });
             }
         }

@@ -9,7 +9,7 @@ use crate::core::fault::Fault;
 use crate::core::formats::scan::{Scanner, TRUNCATED, shown};
 use crate::core::kernel::Metric3;
 use crate::core::progress::Pace;
-use crate::core::soup::{Counting, Data, Group, MeshFile};
+use crate::core::soup::{CELL_DATA, Counting, Data, Group, MeshFile, POINT_DATA};
 
 /// A data array of the file.
 struct Array {
@@ -35,11 +35,20 @@ enum Values {
 }
 
 impl Values {
-    /// Reads all remaining numbers.
+    /// Reads the numbers before the next tag, with comments between them.
     fn read(s: &mut Scanner) -> Result<Values, Fault> {
+        let mut part = s.part_before(b'<');
+        let mut next = || -> Result<Option<f64>, Fault> {
+            loop {
+                match part.real_if_any()? {
+                    None if is_comment(s) && s.skip_past(b"-->") => part = s.part_before(b'<'),
+                    value => return Ok(value),
+                }
+            }
+        };
         let mut whole = Vec::new();
         let mut first = None;
-        while let Some(value) = s.real_if_any()? {
+        while let Some(value) = next()? {
             if f64::from(value as u32).to_bits() != value.to_bits() {
                 first = Some(value);
                 break;
@@ -51,7 +60,7 @@ impl Values {
             return Ok(Values::Whole(whole));
         };
         let mut real: Vec<f64> = whole.into_iter().map(f64::from).chain([first]).collect();
-        while let Some(value) = s.real_if_any()? {
+        while let Some(value) = next()? {
             real.push(value);
         }
         real.shrink_to_fit();
@@ -89,7 +98,15 @@ pub fn read(name: &str, bytes: &[u8], pace: &dyn Pace) -> Result<MeshFile, Fault
     let mut arrays = Vec::new();
     let mut parent = String::new();
     let (mut is_grid, mut pieces) = (false, 0);
-    while s.skip_past(b"<") {
+    let mut omitted = Vec::new();
+    loop {
+        s.part_before(b'<');
+        if is_comment(&s) && s.skip_past(b"-->") {
+            continue;
+        }
+        if !s.skip_past(b"<") {
+            break;
+        }
         let mark = s.mark();
         let Some(tag) = s.until(b'>') else {
             return Err(s.fault_at(mark, "A tag is not closed").remedy(TRUNCATED));
@@ -106,13 +123,14 @@ pub fn read(name: &str, bytes: &[u8], pace: &dyn Pace) -> Result<MeshFile, Fault
             b"Points" | b"Cells" | b"PointData" | b"CellData" | b"FieldData" => parent = shown(word),
             b"DataArray" if !parent.is_empty() && !tag.ends_with(b"/") => {
                 if parent == "FieldData" && attribute(tag, "NumberOfComponents").as_deref() != Some("2") {
+                    omitted.push(("field data", attribute(tag, "Name").unwrap_or_default()));
                     continue;
                 }
                 if attribute(tag, "format").as_deref() != Some("ascii") {
                     return Err(s.fault_at(mark, "The array is not inline text").remedy(AS_TEXT));
                 }
                 let components = attribute(tag, "NumberOfComponents").and_then(|n| n.parse().ok()).unwrap_or(1);
-                let values = Values::read(&mut s.part_before(b'<'))?;
+                let values = Values::read(&mut s)?;
                 let name = attribute(tag, "Name").unwrap_or_default();
                 arrays.push(Array { parent: parent.clone(), name, components, values, mark });
             }
@@ -123,10 +141,17 @@ pub fn read(name: &str, bytes: &[u8], pace: &dyn Pace) -> Result<MeshFile, Fault
         let what = if is_grid { format!("The file has {pieces} pieces") } else { "This is not a VTK file".to_string() };
         return Err(Fault::new(what).at(name).remedy(AS_TEXT));
     }
-    assemble(&s, name, arrays)
+    let mut mesh = assemble(&s, name, arrays)?;
+    omitted.iter().for_each(|(kind, name)| mesh.omit(kind, name));
+    Ok(mesh)
 }
 
 const AS_TEXT: &str = "Save it as an unstructured grid in one piece, as inline text without compression";
+
+/// Whether a comment is next.
+fn is_comment(s: &Scanner) -> bool {
+    s.peek().is_some_and(|word| word.starts_with(b"<!--"))
+}
 
 /// The value of an attribute in a tag.
 fn attribute(tag: &[u8], name: &str) -> Option<String> {
@@ -175,6 +200,7 @@ fn assemble(s: &Scanner, name: &str, mut arrays: Vec<Array>) -> Result<MeshFile,
     let mut skipped: BTreeMap<String, usize> = BTreeMap::new();
     let cells = types.values.len();
     let mut from = 0usize;
+    let mut points_alone = 0;
     for cell in 0..cells {
         let (to, kind) = (offsets.values.at(cell), types.values.at(cell));
         if !(to >= from as f64 && to as usize <= connectivity.values.len()) {
@@ -210,7 +236,7 @@ fn assemble(s: &Scanner, name: &str, mut arrays: Vec<Array>) -> Result<MeshFile,
                 let what = format!("Cell {cell} of type {kind} has {count} points");
                 return Err(s.fault_at(offsets.mark, what));
             }
-            (1 | 2, _) => {}
+            (1 | 2, _) => points_alone += 1,
             (21..=37, _) => {
                 let what = format!("Cells of higher order (type {kind}) are not supported");
                 return Err(s.fault_at(types.mark, what).remedy("Save the mesh with cells of order 1"));
@@ -219,6 +245,9 @@ fn assemble(s: &Scanner, name: &str, mut arrays: Vec<Array>) -> Result<MeshFile,
         }
     }
     mesh.skipped = skipped.into_iter().collect();
+    if points_alone > 0 {
+        mesh.omit_many("cell", "of points alone", points_alone);
+    }
     drop((connectivity, offsets, types));
     let (points, triangles) = (mesh.points.len(), triangle_cells.len());
     let mut element_cells = triangle_cells;
@@ -267,7 +296,9 @@ fn assemble(s: &Scanner, name: &str, mut arrays: Vec<Array>) -> Result<MeshFile,
                     }
                 }
             }
-            _ => {}
+            "PointData" => mesh.omit(POINT_DATA, &array.name),
+            "CellData" => mesh.omit(CELL_DATA, &array.name),
+            _ => mesh.omit("array of cells", &array.name),
         }
     }
     mesh.groups.sort_by_key(|group| (group.dimension, group.tag));
