@@ -23,8 +23,8 @@ const BATCH: usize = 1 << 12;
 /// With the line or byte: an unexpected word, a number that is malformed or not finite, a truncated file.
 pub fn read(name: &str, bytes: &[u8], pace: &dyn Pace) -> Result<MeshFile, Fault> {
     // A binary file may begin with "solid" too, so its length decides.
-    if bytes.len() >= HEADER && is_binary(bytes) {
-        return read_binary(name, bytes, pace);
+    if let Some(count) = binary_triangles(bytes) {
+        return read_binary(name, bytes, count, pace);
     }
     if bytes.trim_ascii_start().get(..5).is_some_and(|word| word.eq_ignore_ascii_case(b"solid")) {
         return read_text(Scanner::new(name, bytes).watched(pace), pace);
@@ -34,16 +34,19 @@ pub fn read(name: &str, bytes: &[u8], pace: &dyn Pace) -> Result<MeshFile, Fault
         .remedy(TRUNCATED))
 }
 
-/// Whether the length fits the number of triangles in the header of a binary file.
-fn is_binary(bytes: &[u8]) -> bool {
-    let count = u32::from_le_bytes([bytes[80], bytes[81], bytes[82], bytes[83]]) as usize;
-    bytes.len() - HEADER == count.saturating_mul(TRIANGLE)
+/// The number of triangles in the header of a binary file, if the file is as long or longer. The bytes at this place of
+/// a text file are a number larger than any file.
+fn binary_triangles(bytes: &[u8]) -> Option<usize> {
+    let count = u32::from_le_bytes(*bytes.get(80..)?.first_chunk()?) as usize;
+    let (needed, there) = (count.saturating_mul(TRIANGLE), bytes.len() - HEADER);
+    (needed == there || (count > 0 && needed < there)).then_some(count)
 }
 
-fn read_binary(name: &str, bytes: &[u8], pace: &dyn Pace) -> Result<MeshFile, Fault> {
+fn read_binary(name: &str, bytes: &[u8], count: usize, pace: &dyn Pace) -> Result<MeshFile, Fault> {
     let mut s = Scanner::new(name, bytes);
     s.set_binary();
-    let triangles = bytes[HEADER..].as_chunks::<TRIANGLE>().0;
+    let (triangles, trailing) = bytes[HEADER..].split_at(count * TRIANGLE);
+    let triangles = triangles.as_chunks::<TRIANGLE>().0;
     let corner = |triangle: &[u8; TRIANGLE], corner: usize| {
         let axis = |axis: usize| {
             let at = 12 * (corner + 1) + 4 * axis;
@@ -70,7 +73,11 @@ fn read_binary(name: &str, bytes: &[u8], pace: &dyn Pace) -> Result<MeshFile, Fa
         welded.extend(part.iter().map(|t| [0, 1, 2].map(|k| welder.weld(&mut points, corner(t, k)))));
     }
     let counting = Counting { points: Count::Nothing, ..Counting::default() };
-    Ok(MeshFile { triangles: welded, points, counting, ..MeshFile::default() })
+    let mut mesh = MeshFile { triangles: welded, points, counting, ..MeshFile::default() };
+    if !trailing.is_empty() {
+        mesh.omit(&format!("{} bytes", trailing.len()), "after the last triangle");
+    }
+    Ok(mesh)
 }
 
 fn read_text(mut s: Scanner, pace: &dyn Pace) -> Result<MeshFile, Fault> {
