@@ -55,7 +55,6 @@ fn what_is_broken_is_refused_with_its_line_and_a_reason() {
         (Format::Obj, "v 0 0 0\nf 1 1 -2\n".into(), "line 2: Expected a vertex of the face, found \"-2\""),
         (Format::Obj, "v 0 0 inf\n".into(), "line 1: Expected a coordinate"),
         (Format::Inp, format!("{nodes}*ELEMENT, TYPE=S4\n1, 1, 2, 3\n"), "line 6: Expected a node of the element"),
-        (Format::Inp, format!("{nodes}*ELEMENT, TYPE=S8R\n"), "line 5: Elements of type S8R are not supported"),
         (Format::Inp, format!("{nodes}2, 1, 1\n*Element, type=S3\n"), "node number 2 is used twice"),
         (Format::Inp, "hello\n".into(), "There is no keyword line"),
         (Format::Vtu, "<a>".into(), "This is not a VTK file"),

@@ -1,5 +1,6 @@
 //! Reading Abaqus input files.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 use glam::DVec3;
@@ -12,29 +13,45 @@ use crate::core::progress::Pace;
 use crate::core::soup::groups::{Listed, by_region};
 use crate::core::soup::{Count, Group, Members, MeshFile};
 
-/// The number of corners of an Abaqus element type; 0 for a type that is skipped, `Err` for one of higher order.
-fn corners_of(kind: &str) -> Result<usize, ()> {
+/// How the nodes of an element type are read.
+#[derive(Clone, Copy)]
+struct Shape {
+    /// Nodes on an element's data lines.
+    nodes: usize,
+    /// The places of its corners among them.
+    corners: &'static [usize],
+}
+
+/// The shape of an Abaqus element type; `None` for one that is not read. Of elements of order 2, the corners come
+/// first; of lines, the node in the middle is the second one.
+fn shape_of(kind: &str) -> Option<Shape> {
     let shells = ["STRI", "S", "CPS", "CPE", "CPEG", "CAX", "M3D", "R3D", "SFM3D", "DS", "DC2D"];
-    let lines = ["T2D", "T3D", "B2", "B3", "R2D", "RAX"];
+    let beams = ["B2", "B3"];
+    let trusses = ["T2D", "T3D", "R2D", "RAX"];
     let digit = |prefix: &str| kind.strip_prefix(prefix)?.bytes().next().filter(u8::is_ascii_digit);
-    match shells.into_iter().find_map(digit) {
-        Some(b'3') => return Ok(3),
-        Some(b'4') => return Ok(4),
-        Some(_) => return Err(()),
-        None => {}
+    let of = |nodes: usize, corners| Some(Shape { nodes, corners });
+    if let Some(nodes) = shells.into_iter().find_map(digit) {
+        return match nodes {
+            b'3' => of(3, &[0, 1, 2]),
+            b'4' => of(4, &[0, 1, 2, 3]),
+            b'6' => of(6, &[0, 1, 2]),
+            b'8' => of(8, &[0, 1, 2, 3]),
+            b'9' => of(9, &[0, 1, 2, 3]),
+            _ => None,
+        };
     }
-    match lines.into_iter().find_map(|prefix| Some((prefix, digit(prefix)?))) {
-        None => Ok(0),
-        Some((_, b'3') | ("B2" | "B3", b'2')) => Err(()),
-        Some(_) => Ok(2),
+    match (beams.into_iter().find_map(digit), trusses.into_iter().find_map(digit)) {
+        (Some(b'2'), _) | (_, Some(b'3')) => of(3, &[0, 2]),
+        (Some(_), _) | (_, Some(b'2')) => of(2, &[0, 1]),
+        _ => None,
     }
 }
 
 /// The section of the following data lines.
 enum Section {
     Nodes,
-    /// Elements with this number of corners, and their set.
-    Elements(usize, Option<usize>),
+    /// Elements of this shape, and their set.
+    Elements(Shape, Option<usize>),
     Skipped(String),
     /// The element numbers of a set; whether they are given as first, last and step (GENERATE).
     Set(usize, bool),
@@ -50,6 +67,8 @@ struct Sets {
     /// The sets to which sections of properties belong.
     regions: Vec<usize>,
     surfaces: NamedLists<(u64, usize)>,
+    /// The names of the sets of nodes.
+    of_nodes: Vec<String>,
 }
 
 /// Lists by name, ignoring case.
@@ -69,10 +88,11 @@ struct Run {
 
 /// Reads nodes and elements, sorted by their numbers. Element sets become groups: where those with sections of
 /// properties cover all elements, they are the regions; else all that do not overlap (`soup::groups`), if the sets
-/// cover all elements. Edge surfaces become groups of lines. Node sets, parts and everything else are ignored.
+/// cover all elements. Edge surfaces become groups of lines. Of elements of order 2, the corners are read. Node sets,
+/// parts and everything else are ignored, and told as not read.
 ///
 /// # Errors
-/// With the line: a malformed node or element, an element of higher order, or a node number that is used twice.
+/// With the line: a malformed node or element, or a node number that is used twice.
 pub fn read(name: &str, bytes: &[u8], pace: &dyn Pace) -> Result<MeshFile, Fault> {
     let mut s = Scanner::new(name, bytes).watched(pace);
     let mut mesh = MeshFile::default();
@@ -81,19 +101,30 @@ pub fn read(name: &str, bytes: &[u8], pace: &dyn Pace) -> Result<MeshFile, Fault
     let mut skipped: BTreeMap<String, usize> = BTreeMap::new();
     let mut section = Section::Other;
     let mut sets = Sets::default();
+    // Nodes of elements of order 2 that are not their corners.
+    let mut middles: Vec<u32> = Vec::new();
     let mut any = false;
-    while let Some(line) = s.line() {
-        if line.is_empty() || line.starts_with(b"**") {
-            continue;
-        }
+    // Whether the previous data line goes on.
+    let mut goes_on = false;
+    while let Some(line) = line(&mut s) {
         if let Some(keyword) = line.strip_prefix(b"*") {
-            section = keyword_line(&s, keyword, &mut sets)?;
+            // Data that follow a surplus comma are no part of the keyword line.
+            let is_part = |_: &[u8], next: &[u8]| next[0].is_ascii_alphabetic();
+            let keyword = continued(&mut s, keyword, is_part);
+            section = keyword_line(&s, &keyword, &mut sets, &mut mesh)?;
+            goes_on = false;
             if matches!(section, Section::Elements(..)) && nodes.is_none() {
                 nodes = Some(number(&s, &mut node_numbers, &mut mesh.points)?);
             }
             any = true;
             continue;
         }
+        let line = match &section {
+            Section::Elements(shape, _) => continued(&mut s, line, |so_far, next| {
+                next[0] != b'*' && so_far.iter().filter(|&&b| b == b',').count() <= shape.nodes
+            }),
+            _ => Cow::Borrowed(line),
+        };
         let mut fields = line.split(|&b| b == b',').map(<[u8]>::trim_ascii);
         match &section {
             Section::Nodes => {
@@ -108,34 +139,39 @@ pub fn read(name: &str, bytes: &[u8], pace: &dyn Pace) -> Result<MeshFile, Fault
                 }
                 mesh.points.push(p);
             }
-            Section::Elements(count, set) => {
+            Section::Elements(shape, set) => {
                 let number = whole(&s, fields.next(), "the number of an element")?;
                 if let Some(set) = set {
                     sets.sets.all[*set].1.push(Run { first: number, last: number, step: 1 });
                 }
-                let mut corners = [0; 4];
-                for corner in &mut corners[..*count] {
+                let mut of_element = [0; 9];
+                for slot in &mut of_element[..shape.nodes] {
                     let node = whole(&s, fields.next(), "a node of the element")?;
-                    *corner = nodes.as_ref().and_then(|nodes| nodes.index(node)).ok_or_else(|| {
+                    *slot = nodes.as_ref().and_then(|nodes| nodes.index(node)).ok_or_else(|| {
                         s.fault(format!("Element {number} refers to node {node}, which does not exist"))
                     })?;
                 }
-                match *count {
-                    2 => mesh.lines.push([corners[0], corners[1]]),
-                    3 => {
-                        mesh.triangles.push([corners[0], corners[1], corners[2]]);
+                let others = (0..shape.nodes).filter(|place| !shape.corners.contains(place));
+                middles.extend(others.map(|place| of_element[place]));
+                match *shape.corners {
+                    [a, b] => mesh.lines.push([a, b].map(|place| of_element[place])),
+                    [a, b, c] => {
+                        mesh.triangles.push([a, b, c].map(|place| of_element[place]));
                         triangle_numbers.push(number);
                     }
                     _ => {
-                        mesh.quads.push(corners);
+                        mesh.quads.push([0, 1, 2, 3].map(|place| of_element[place]));
                         quad_numbers.push(number);
                     }
                 }
             }
-            Section::Skipped(kind) => match skipped.get_mut(kind) {
-                Some(count) => *count += 1,
-                None => drop(skipped.insert(kind.clone(), 1)),
-            },
+            Section::Skipped(kind) => {
+                match skipped.get_mut(kind) {
+                    Some(count) => *count += usize::from(!goes_on),
+                    None => drop(skipped.insert(kind.clone(), 1)),
+                }
+                goes_on = line.ends_with(b",");
+            }
             Section::Set(set, generated) => {
                 // Names of other sets are ignored.
                 let numbers: Vec<u64> = fields.filter_map(parse_whole).collect();
@@ -170,6 +206,9 @@ pub fn read(name: &str, bytes: &[u8], pace: &dyn Pace) -> Result<MeshFile, Fault
     if nodes.is_none() {
         number(&s, &mut node_numbers, &mut mesh.points)?;
     }
+    if !middles.is_empty() {
+        drop_middles(&mut mesh, &mut node_numbers, &middles);
+    }
     sort_by_number(&mut triangle_numbers, &mut mesh.triangles, &mut []);
     sort_by_number(&mut quad_numbers, &mut mesh.quads, &mut []);
     mesh.counting.shared = true;
@@ -178,6 +217,50 @@ pub fn read(name: &str, bytes: &[u8], pace: &dyn Pace) -> Result<MeshFile, Fault
     sets.into_groups(&mut mesh, &triangle_numbers, &quad_numbers);
     mesh.skipped = skipped.into_iter().collect();
     Ok(mesh)
+}
+
+/// The next line that is not a comment.
+fn line<'a>(s: &mut Scanner<'a>) -> Option<&'a [u8]> {
+    loop {
+        let line = s.filled_line()?;
+        if !line.starts_with(b"**") {
+            return Some(line);
+        }
+    }
+}
+
+/// A line with the lines that continue it: while it ends with a comma and `is_part` says so of the next line.
+fn continued<'a>(s: &mut Scanner<'a>, line: &'a [u8], is_part: impl Fn(&[u8], &[u8]) -> bool) -> Cow<'a, [u8]> {
+    let mut whole = Cow::Borrowed(line);
+    while whole.ends_with(b",") {
+        let mut ahead = s.clone();
+        let Some(next) = self::line(&mut ahead).filter(|next| is_part(&whole, next)) else { break };
+        whole.to_mut().extend(next);
+        *s = ahead;
+    }
+    whole
+}
+
+/// Removes the nodes of elements of order 2 that are no corners of any element, and tells of them.
+fn drop_middles(mesh: &mut MeshFile, numbers: &mut Vec<u64>, middles: &[u32]) {
+    let mut is_middle = vec![false; mesh.points.len()];
+    middles.iter().for_each(|&node| is_middle[node as usize] = true);
+    let corners = |mesh: &mut MeshFile, visit: &mut dyn FnMut(&mut u32)| {
+        mesh.lines.as_flattened_mut().iter_mut().for_each(&mut *visit);
+        mesh.triangles.as_flattened_mut().iter_mut().for_each(&mut *visit);
+        mesh.quads.as_flattened_mut().iter_mut().for_each(visit);
+    };
+    corners(mesh, &mut |node| is_middle[*node as usize] = false);
+    let mut next = 0..;
+    let index: Vec<u32> = is_middle.iter().map(|&gone| if gone { 0 } else { next.next().unwrap_or(0) }).collect();
+    corners(mesh, &mut |node| *node = index[*node as usize]);
+    let (mut of_point, mut of_number) = (is_middle.iter(), is_middle.iter());
+    mesh.points.retain(|_| of_point.next() == Some(&false));
+    numbers.retain(|_| of_number.next() == Some(&false));
+    let dropped = is_middle.len() - mesh.points.len();
+    if dropped > 0 {
+        mesh.omit_many("mid-side node", "of an element of order 2", dropped);
+    }
 }
 
 impl Sets {
@@ -204,7 +287,9 @@ impl Sets {
             }
             elements.sort_unstable();
             elements.dedup();
-            if !elements.is_empty() {
+            if elements.is_empty() {
+                mesh.omit("set without triangles and quadrilaterals:", name);
+            } else {
                 let tag = set as u32 + 1;
                 mesh.groups.push(Group { dimension: 2, tag, name: name.clone() });
                 listed.push(Listed { tag, elements, used: self.regions.contains(&set) });
@@ -231,6 +316,10 @@ impl Sets {
             mesh.quad_tags = tags.split_off(triangles);
             mesh.triangle_tags = tags;
         }
+        // The nodes of lines may be a set besides.
+        for name in self.of_nodes.iter().filter(|name| !self.surfaces.known.contains_key(&name.to_ascii_uppercase())) {
+            mesh.omit("node set", name);
+        }
         let lines = mesh.lines.len();
         for ((name, sides), tag) in self.surfaces.all.into_iter().zip(1..) {
             let before = mesh.lines.len();
@@ -247,6 +336,8 @@ impl Sets {
                 mesh.line_tags.resize(before, 0);
                 mesh.line_tags.resize(mesh.lines.len(), tag);
                 mesh.groups.push(Group { dimension: 1, tag, name });
+            } else {
+                mesh.omit("surface", &name);
             }
         }
         if mesh.lines.len() == lines {
@@ -271,7 +362,7 @@ fn whole(s: &Scanner, field: Option<&[u8]>, what: &str) -> Result<u64, Fault> {
 }
 
 /// The section that a keyword line begins.
-fn keyword_line(s: &Scanner, line: &[u8], sets: &mut Sets) -> Result<Section, Fault> {
+fn keyword_line(s: &Scanner, line: &[u8], sets: &mut Sets, mesh: &mut MeshFile) -> Result<Section, Fault> {
     let text = String::from_utf8_lossy(line);
     let mut parts = text.split(',').map(str::trim);
     let keyword = parts.next().unwrap_or_default().to_ascii_uppercase();
@@ -281,17 +372,17 @@ fn keyword_line(s: &Scanner, line: &[u8], sets: &mut Sets) -> Result<Section, Fa
         .collect();
     let option = |key: &str| options.iter().find(|option| option.0 == key).map(|option| option.1);
     match keyword.as_str() {
-        "NODE" => Ok(Section::Nodes),
+        "NODE" => {
+            sets.of_nodes.extend(option("NSET").map(str::to_owned));
+            Ok(Section::Nodes)
+        }
         "ELEMENT" => {
             let kind = option("TYPE").filter(|kind| !kind.is_empty()).ok_or_else(|| s.fault("*ELEMENT has no TYPE"))?;
             let kind = shown(kind.to_ascii_uppercase().as_bytes());
-            match corners_of(&kind) {
-                Ok(0) => Ok(Section::Skipped(format!("element {kind}"))),
-                Ok(count) => Ok(Section::Elements(count, option("ELSET").map(|name| sets.sets.index(name)))),
-                Err(()) => Err(s
-                    .fault(format!("Elements of type {kind} are not supported"))
-                    .remedy("Save the mesh with elements of order 1 (S3, S4)")),
-            }
+            Ok(match shape_of(&kind) {
+                None => Section::Skipped(format!("element {kind}")),
+                Some(shape) => Section::Elements(shape, option("ELSET").map(|name| sets.sets.index(name))),
+            })
         }
         "ELSET" => Ok(match option("ELSET") {
             Some(name) => Section::Set(sets.sets.index(name), option("GENERATE").is_some()),
@@ -307,9 +398,22 @@ fn keyword_line(s: &Scanner, line: &[u8], sets: &mut Sets) -> Result<Section, Fa
             (Some(name), kind) if kind.is_none_or(|kind| kind.eq_ignore_ascii_case("ELEMENT")) => {
                 Section::Surface(sets.surfaces.index(name))
             }
-            _ => Section::Other,
+            (name, _) => {
+                mesh.omit("surface", name.unwrap_or("without a name"));
+                Section::Other
+            }
         }),
-        _ => Ok(Section::Other),
+        "NSET" => {
+            sets.of_nodes.extend(option("NSET").map(str::to_owned));
+            Ok(Section::Other)
+        }
+        "HEADING" | "PREPRINT" => Ok(Section::Other),
+        other => {
+            if !other.starts_with("END ") {
+                mesh.omit("keyword", &format!("*{other}"));
+            }
+            Ok(Section::Other)
+        }
     }
 }
 
