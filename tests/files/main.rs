@@ -2,6 +2,7 @@
 //! ours, what others write is read, what is broken is refused with its place, and no bytes make a reader panic or hang.
 #![allow(clippy::unwrap_used)]
 
+mod as_people_have_them;
 mod foreign;
 mod independent;
 mod mutation;

@@ -12,9 +12,11 @@ use std::path::Path;
 
 use glam::{DMat4, DQuat, DVec3, Mat4, Quat, Vec3};
 use gltf::binary::Glb;
+use gltf::json::validation::Error as Invalid;
 use gltf::mesh::{Mode, Primitive};
 use gltf::scene::Transform;
 use gltf::{Document, Node, json};
+use serde_json::error::Category;
 
 use super::scan::{DAMAGED, TRUNCATED, shown};
 use crate::core::fault::Fault;
@@ -91,10 +93,7 @@ fn document<'b>(name: &str, bytes: &'b [u8]) -> Result<(Document, Blob<'b>), Fau
             return Err(Fault::new(what).at(name).remedy(TRUNCATED));
         }
     }
-    let refuse = |error: gltf::Error| {
-        let said: String = error.to_string().chars().filter(|c| !c.is_control()).take(160).collect();
-        Fault::new(format!("This is not valid glTF 2.0: {said}")).at(name)
-    };
+    let refuse = |error: gltf::Error| invalid(name, &error);
     let (text, blob) = if bytes.starts_with(b"glTF") {
         let glb = Glb::from_slice(bytes).map_err(refuse)?;
         (glb.json, glb.bin)
@@ -122,6 +121,43 @@ fn document<'b>(name: &str, bytes: &'b [u8]) -> Result<(Document, Blob<'b>), Fau
     // Checked above; the validation would reject all of them.
     root.extensions_required.clear();
     Ok((Document::from_json(root).map_err(refuse)?, blob))
+}
+
+/// What is wrong with a document, in words.
+fn invalid(name: &str, error: &gltf::Error) -> Fault {
+    match error {
+        gltf::Error::Deserialize(error) => {
+            let what = match error.classify() {
+                Category::Eof => "The JSON of the document ends too early",
+                Category::Data => "A value of the JSON is not one that glTF 2.0 has in its place",
+                Category::Syntax | Category::Io => "This is not JSON",
+            };
+            let remedy = if error.is_eof() { TRUNCATED } else { DAMAGED };
+            Fault::new(what)
+                .at(format!("{name}, line {} of the JSON, column {}", error.line(), error.column()))
+                .remedy(remedy)
+        }
+        gltf::Error::Validation(list) => {
+            let what = match list.first() {
+                Some((path, kind)) => {
+                    let how = match kind {
+                        Invalid::IndexOutOfBounds => "refers to something that is not there",
+                        Invalid::Missing => "is missing",
+                        Invalid::Oversize => "is too large",
+                        Invalid::Invalid | Invalid::Unsupported => "has a value that glTF 2.0 does not allow",
+                    };
+                    format!("This is not valid glTF 2.0: \"{}\" {how}", shown(path.as_str().as_bytes()))
+                }
+                None => "This is not valid glTF 2.0".to_owned(),
+            };
+            Fault::new(what).at(name).remedy(DAMAGED)
+        }
+        gltf::Error::Binary(gltf::binary::Error::Version(version)) => {
+            let what = format!("This is glTF of version {version}, and only version 2 is read");
+            Fault::new(what).at(name).remedy("Export it as glTF 2.0")
+        }
+        _ => Fault::new("The chunks of the file are not those of binary glTF 2.0").at(name).remedy(DAMAGED),
+    }
 }
 
 #[derive(Default)]

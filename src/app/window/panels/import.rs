@@ -16,7 +16,7 @@ use crate::core::case::{MeshUse, Taking};
 use crate::core::discrete::Feature;
 use crate::core::geometry::ShapeLimits;
 use crate::core::kernel::Shortest;
-use crate::core::soup::Ignored;
+use crate::core::soup::{Ignored, NOT_READ};
 use crate::render::palette::{Palette, Rgba};
 use crate::render::scene::{feature_line, seam_line};
 
@@ -377,14 +377,23 @@ fn counts(ui: &mut Ui, import: &Import, palette: &Palette) {
         }
         None => {}
     }
-    if !loaded.repairs.is_empty() {
-        heading(ui, "Repaired", "", palette);
-        for repair in &loaded.repairs {
-            ui.horizontal(|ui| {
-                ui.label(RichText::new(icons::CHECK).font(theme::regular(theme::TABLE)).color(ink(palette.holds)));
-                ui.add(egui::Label::new(line(repair.clone(), palette.text)).wrap());
-            });
-        }
+    let repaired = loaded.repairs.iter().filter(|told| !told.starts_with(NOT_READ)).map(String::as_str).collect();
+    let not_read = loaded.repairs.iter().filter_map(|told| told.strip_prefix(NOT_READ)).collect();
+    told(ui, "Repaired", (icons::CHECK, palette.holds), repaired, palette);
+    told(ui, "Not read", (icons::X, palette.text), not_read, palette);
+}
+
+/// A list under a heading, each with an icon; nothing without entries.
+fn told(ui: &mut Ui, title: &str, (icon, colour): (&str, Rgba), entries: Vec<&str>, palette: &Palette) {
+    if entries.is_empty() {
+        return;
+    }
+    heading(ui, title, "", palette);
+    for entry in entries {
+        ui.horizontal(|ui| {
+            ui.label(RichText::new(icon).font(theme::regular(theme::TABLE)).color(ink(colour)));
+            ui.add(egui::Label::new(line(entry.to_owned(), palette.text)).wrap());
+        });
     }
 }
 

@@ -1,0 +1,404 @@
+//! Files as other programs and people leave them: any line ends, blank lines, comments, statements over several lines,
+//! bytes after the end; and what of them is not read is told.
+
+use std::fmt::Write;
+use std::fs;
+
+use quadfront::core::formats::format::{read_bytes, read_mesh};
+use quadfront::core::formats::{Format, medit};
+use quadfront::core::soup::MeshFile;
+
+use super::{MSH2, TEXT, bytes_of, data, plates};
+
+fn read(name: &str) -> MeshFile {
+    read_mesh(&data(name), None).unwrap_or_else(|fault| panic!("{fault}"))
+}
+
+fn told(format: Format, text: &str) -> Vec<String> {
+    read_bytes("a", text.as_bytes(), format).unwrap_or_else(|fault| panic!("{fault}")).not_read()
+}
+
+/// The points of the triangles, corner by corner.
+fn places(mesh: &MeshFile) -> Vec<[f64; 3]> {
+    mesh.triangles.as_flattened().iter().map(|&k| mesh.points[k as usize].to_array()).collect()
+}
+
+/// The same triangles in the same order, to the precision of a file.
+fn same_places(name: &str, mesh: &MeshFile, whole: &MeshFile) {
+    let near = |(a, b): (&[f64; 3], &[f64; 3])| (0..3).all(|axis| (a[axis] - b[axis]).abs() < 1e-6);
+    let (found, expected) = (places(mesh), places(whole));
+    assert_eq!(found.len(), expected.len(), "{name}");
+    assert!(found.iter().zip(&expected).all(near), "{name}");
+}
+
+#[test]
+fn o_cr_o_cont_o_comment_p_cr_p_blankline_and_f_trailing_are_one_mesh() {
+    let text = fs::read_to_string(data("o_cr.obj")).unwrap();
+    assert!(!text.contains('\n') && text.contains('\r'));
+    let whole = read_bytes("a", text.replace('\r', "\n").as_bytes(), Format::Obj).unwrap();
+    assert_eq!((whole.points.len(), whole.triangles.len()), (169, 288));
+    for (name, not_read) in [
+        ("o_cr.obj", None),
+        ("o_cont.obj", None),
+        ("o_comment.obj", None),
+        ("p_cr.ply", None),
+        ("p_blankline.ply", Some("not read: vertex property nx, ny and nz")),
+        ("f_trailing.stl", Some("not read: 37 bytes after the last triangle")),
+    ] {
+        let mesh = read(name);
+        same_places(name, &mesh, &whole);
+        assert_eq!(mesh.not_read(), not_read.into_iter().collect::<Vec<_>>(), "{name}");
+        if name.starts_with('o') {
+            assert_eq!(mesh, whole, "{name}");
+        }
+    }
+}
+
+#[test]
+fn s_cr_an_stl_with_lines_that_end_with_cr_is_read() {
+    let whole = read("o_cr.obj");
+    let mut text = String::from("solid x\n");
+    for corners in places(&whole).as_chunks::<3>().0 {
+        text += "facet normal 0 0 1\nouter loop\n";
+        corners.iter().for_each(|[x, y, z]| writeln!(text, "vertex {x:e} {y:e} {z:e}").unwrap());
+        text += "endloop\nendfacet\n";
+    }
+    text += "endsolid x\n";
+    let mesh = read_bytes("s_cr.stl", text.replace('\n', "\r").as_bytes(), Format::Stl).unwrap();
+    same_places("s_cr.stl", &mesh, &whole);
+    assert_eq!((mesh.points.len(), mesh.group_name(2, 1)), (169, Some("x")));
+}
+
+#[test]
+fn i_cont_keywords_and_elements_of_abaqus_go_on_in_the_next_line() {
+    let text = fs::read_to_string(data("i_cont.inp")).unwrap();
+    let joined = text.replace(",\n ", ", ").replace(",\nELSET", ", ELSET");
+    assert!(text.contains("TYPE=CPE3,\n") && joined.lines().all(|line| !line.ends_with(',')));
+    let (mesh, whole) = (read("i_cont.inp"), read_bytes("a", joined.as_bytes(), Format::Inp).unwrap());
+    assert!(mesh.triangles.len() > 100);
+    assert_eq!(mesh, whole);
+}
+
+/// Text files of every format, with how a comment stands on a line of its own.
+fn texts() -> Vec<(Format, String, Option<&'static str>)> {
+    let comment = |format| match format {
+        Format::Obj | Format::Medit => Some("# remark"),
+        Format::Inp => Some("** remark"),
+        Format::Vtu => Some("<!-- <remark> 1 -->"),
+        _ => None,
+    };
+    let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
+    let mut texts: Vec<_> =
+        Format::written().map(|format| (format, text(bytes_of(format, &plates(), TEXT)), comment(format))).collect();
+    texts.push((Format::Msh, text(bytes_of(Format::Msh, &plates(), MSH2)), None));
+    for (format, name) in
+        [(Format::Stl, "plate_text.stl"), (Format::Gltf, "plates.gltf"), (Format::Msh, "plates_22a.msh")]
+    {
+        texts.push((format, fs::read_to_string(data(name)).unwrap().replace("\r\n", "\n"), None));
+    }
+    texts
+}
+
+#[test]
+fn line_ends_blank_lines_and_comments_change_nothing_in_any_format() {
+    for (format, text, comment) in texts() {
+        let whole = read_bytes("a", text.as_bytes(), format).unwrap();
+        let holds = |what: &str, text: &str| {
+            let mesh = read_bytes("a", text.as_bytes(), format).unwrap_or_else(|fault| panic!("{what}: {fault}"));
+            assert_eq!(mesh, whole, "{format:?}, {what}");
+        };
+        holds("CR LF", &text.replace('\n', "\r\n"));
+        holds("CR", &text.replace('\n', "\r"));
+        holds("blank lines", &text.replace('\n', "\n\n"));
+        holds("blank lines of CR", &text.replace('\n', "\r \r"));
+        holds("blanks at the ends of lines", &text.replace('\n', " \t\n"));
+        holds("blank lines at the end", &format!("{text}\n \n\n"));
+        holds("no line end at the end", text.trim_end());
+        if let Some(comment) = comment {
+            holds("comments", &text.replace('\n', &format!("\n{comment}\n")));
+        }
+    }
+    let sol = "MeshVersionFormatted 2\nDimension 2\nSolAtVertices\n2\n1 3\n1 0 1\n2 0 2\nEnd\n";
+    let whole = medit::read_metric("a", sol.as_bytes(), 2).unwrap();
+    for text in [sol.replace('\n', "\r"), sol.replace('\n', "\r\n"), sol.replace('\n', "\n# remark\n\n")] {
+        assert_eq!(medit::read_metric("a", text.as_bytes(), 2).unwrap(), whole, "{text:?}");
+    }
+}
+
+#[test]
+fn the_place_of_a_fault_is_its_line_whatever_ends_the_lines() {
+    for end in ["\n", "\r\n", "\r"] {
+        for (format, lines, line) in [
+            (Format::Obj, &["v 0 0 0", "v 1 0 \\", " 0", "# f x", "f 1 2 x"][..], 5),
+            (Format::Medit, &["MeshVersionFormatted 2", "Dimension 2", "Vertices 1", "0 0 x"], 4),
+            (Format::Inp, &["*NODE", "1, 0, 0", "", "2, x, 0"], 4),
+            (Format::Stl, &["solid", "facet normal 0 0 1", "outer loop", "vertex 0 0 x"], 4),
+            (Format::Ply, &[PLY_HEAD, "0 0 0", "1 one 0"], 9),
+            (Format::Msh, &["$MeshFormat", "2.2 0 8", "$EndMeshFormat", "$Nodes", "1", "1 0 x 0"], 6),
+            (
+                Format::Vtu,
+                &["<VTKFile type=\"UnstructuredGrid\">", "<Points>", "<DataArray format=\"ascii\">", "0 x"],
+                4,
+            ),
+        ] {
+            let text = lines.join("\n").replace('\n', end);
+            let fault = read_bytes("a", text.as_bytes(), format).unwrap_err();
+            assert_eq!(fault.place, format!("a, line {line}"), "{end:?}: {fault}");
+        }
+    }
+    let fault = read_bytes("a", b"{\n\"asset\": {\"version\": \"2.0\"},\nx", Format::Gltf).unwrap_err();
+    assert_eq!(fault.place, "a, line 3 of the JSON, column 1");
+}
+
+const PLY_HEAD: &str =
+    "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\nend_header";
+
+#[test]
+fn what_is_cut_off_or_goes_on_is_said_in_words() {
+    let mut files: Vec<(Format, Vec<u8>)> =
+        texts().into_iter().map(|(format, text, _)| (format, text.into_bytes())).collect();
+    for name in ["plate_binary.ply", "plate_binary.stl", "plates.glb", "plates_41b.msh", "plates_22b.msh"] {
+        files.push((Format::from_path(&data(name)).unwrap(), fs::read(data(name)).unwrap()));
+    }
+    for (format, bytes) in &files {
+        let whole = read_bytes("a", bytes, *format).unwrap();
+        for tenth in 1..10 {
+            let part = &bytes[..bytes.len() * tenth / 10];
+            match read_bytes("a", part, *format) {
+                // Formats without counts cannot know that something is missing.
+                Ok(mesh) => assert!(mesh.points.len() <= whole.points.len(), "{format:?}"),
+                Err(fault) => in_words(&fault.to_string()),
+            }
+        }
+        // A header that lies, in each place.
+        for at in (0..bytes.len().min(600)).step_by(3) {
+            let mut changed = bytes.clone();
+            changed[at] = b'~';
+            if let Err(fault) = read_bytes("a", &changed, *format) {
+                in_words(&fault.to_string());
+            }
+        }
+    }
+    for (name, told) in
+        [("plate_binary.stl", "after the last triangle"), ("plate_binary.ply", "after the last element")]
+    {
+        let mut bytes = fs::read(data(name)).unwrap();
+        let whole = read(name);
+        bytes.extend([0; 7]);
+        let mesh = read_bytes("a", &bytes, Format::from_path(&data(name)).unwrap()).unwrap();
+        assert_eq!((&mesh.points, &mesh.triangles), (&whole.points, &whole.triangles));
+        assert_eq!(mesh.not_read().last(), Some(&format!("not read: 7 bytes {told}")));
+    }
+}
+
+/// No parser's own words, and one line.
+fn in_words(told: &str) {
+    let foreign = ["Error", "location", "Couldn't", "Custom", "at line", "offset:", "{", "\\", "\n", "\t", "Invalid"];
+    assert!(told.starts_with("a") && told.ends_with('.'), "{told}");
+    assert!(!foreign.iter().any(|word| told.contains(word)), "{told}");
+}
+
+#[test]
+fn triangle_strips_of_ply_keep_their_sense() {
+    let points = "0 0 0\n0 1 0\n1 0 0\n1 1 0\n2 0 0\n2 1 0\n";
+    let head = |encoding: &str| {
+        format!(
+            "ply\nformat {encoding} 1.0\nelement vertex 6\nproperty float x\nproperty float y\nproperty float z\n\
+             element tristrips 1\nproperty list int int vertex_indices\nend_header\n"
+        )
+    };
+    // A strip, another one behind a separator, and a turn by a point twice.
+    let strips = [4, 2, 5, 3, -1, 2, 0, 3, 1, -1, 1, 1, 3];
+    let expected = [[4, 2, 5], [5, 2, 3], [2, 0, 3], [3, 0, 1]];
+    let words = strips.map(|k: i32| k.to_string()).join("\n");
+    let mesh = read_bytes("a", format!("{}{points}13 {words}\n", head("ascii")).as_bytes(), Format::Ply).unwrap();
+    assert_eq!(mesh.triangles, expected);
+    assert!(mesh.not_read().is_empty(), "{:?}", mesh.not_read());
+    let cross = |t: &[u32; 3]| {
+        let [a, b, c] = t.map(|k| mesh.points[k as usize]);
+        (b - a).cross(c - a).z
+    };
+    assert!(mesh.triangles.iter().all(|t| cross(t) < 0.0));
+    let mut binary = head("binary_little_endian").into_bytes();
+    points.split_whitespace().for_each(|x| binary.extend(x.parse::<f32>().unwrap().to_le_bytes()));
+    [13].iter().chain(&strips).for_each(|k: &i32| binary.extend(k.to_le_bytes()));
+    assert_eq!(read_bytes("a", &binary, Format::Ply).unwrap().triangles, expected);
+}
+
+#[test]
+fn a_binary_ply_whose_header_ends_with_cr_alone_keeps_its_first_byte() {
+    let mut bytes = fs::read(data("plate_binary.ply")).unwrap();
+    let end = bytes.windows(11).position(|part| part == b"end_header\n").unwrap() + 11;
+    bytes[..end].iter_mut().filter(|b| **b == b'\n').for_each(|b| *b = b'\r');
+    // The first byte of the first number is a line feed.
+    bytes[end] = b'\n';
+    let mesh = read_bytes("a", &bytes, Format::Ply).unwrap();
+    assert_eq!((mesh.points[0].x as f32).to_le_bytes()[0], b'\n');
+    assert_eq!(mesh.triangles, read("plate_binary.ply").triangles);
+}
+
+#[test]
+fn elements_of_order_2_are_read_by_their_corners_and_their_other_nodes_are_told() {
+    let nodes = "*NODE, NSET=ALL\n1, 0, 0\n2, 2, 0\n3, 2, 2\n4, 0, 2\n5, 4, 0\n6, 4, 2\n10, 1, 0\n11, 2, 1\n12, 1, 1\n\
+                 13, 3, 0\n14, 4, 1\n15, 3, 2\n16, 0, 1\n17, 1, 2\n";
+    for (triangle, quad) in [("CPE6", "CPE8"), ("CPS6M", "CPS8R"), ("STRI65", "S8R"), ("DC2D6", "M3D8")] {
+        let text = format!(
+            "{nodes}*ELEMENT, TYPE={triangle}, ELSET=LEFT\n1, 1, 2, 3, 10,\n 11, 12\n2, 1, 3, 4, 12, 17, 16\n\
+             *ELEMENT, TYPE={quad}, ELSET=RIGHT\n3, 2, 5, 6, 3,\n13, 14, 15, 11\n*ELEMENT, TYPE=B32\n4, 1, 10, 2\n\
+             *ELEMENT, TYPE=C3D10\n5, 1, 2, 3, 4, 5, 6,\n 10, 11, 12, 13\n6, 1, 2, 3, 4, 5, 6, 10, 11, 12, 13\n"
+        );
+        let mesh = read_bytes("a", text.as_bytes(), Format::Inp).unwrap();
+        assert_eq!(
+            (mesh.points.len(), &mesh.triangles[..], &mesh.quads[..]),
+            (6, &[[0, 1, 2], [0, 2, 3]][..], &[[1, 4, 5, 2]][..])
+        );
+        assert_eq!(mesh.lines, [[0, 1]]);
+        assert_eq!(
+            (mesh.group_name(2, mesh.triangle_tags[0]), mesh.group_name(2, mesh.quad_tags[0])),
+            (Some("LEFT"), Some("RIGHT"))
+        );
+        assert_eq!(
+            mesh.not_read(),
+            [
+                "not read: element C3D10 (2 times)",
+                "not read: mid-side node of an element of order 2 (8 times)",
+                "not read: node set ALL"
+            ]
+        );
+    }
+    // A node that is the middle of one element and a corner of another stays.
+    let text = format!("{nodes}*ELEMENT, TYPE=S6\n1, 1, 2, 3, 10, 11, 12\n*ELEMENT, TYPE=S3\n2, 2, 5, 11\n");
+    let mesh = read_bytes("a", text.as_bytes(), Format::Inp).unwrap();
+    let corner = |t: usize, k: usize| mesh.points[mesh.triangles[t][k] as usize].to_array();
+    assert_eq!((corner(1, 1), corner(1, 2)), ([4.0, 0.0, 0.0], [2.0, 1.0, 0.0]));
+}
+
+#[test]
+fn what_a_file_has_besides_is_told_in_every_format() {
+    let square = "v 0 0 0 1 0 0\nv 1 0 0 1 0 0\nv 1 1 0 1 0 0\n";
+    assert_eq!(
+        told(
+            Format::Obj,
+            &format!(
+                "mtllib a\n{square}vn 0 0 1\nvn 0 0 1\no lid\ng part one\nusemtl red\nf 1 2 3\ng none\ncurv 0 1 1 2\n"
+            )
+        ),
+        [
+            "not read: group without members: \"lid\" and \"none\"",
+            "not read: further name of a group one",
+            "not read: statement mtllib (material library), vn (normal) (2 times), usemtl (material) and curv (curve)",
+            "not read: vertex colour (3 times)",
+        ]
+    );
+    let nodes = "*HEADING\nany\n*NODE\n1, 0, 0\n2, 1, 0\n3, 0, 1\n*ELEMENT, TYPE=S3, ELSET=ALL\n1, 1, 2, 3\n";
+    assert_eq!(
+        told(
+            Format::Inp,
+            &format!(
+                "{nodes}*NSET, NSET=RIM\n1, 2\n*SURFACE, NAME=RIM\n1, E1\n*NSET, NSET=PIN\n1\n*ELSET, ELSET=BARS\n7\n\
+                 *SURFACE, TYPE=NODE, NAME=TOUCH\nPIN, 1.0\n*MATERIAL, NAME=STEEL\n*ELASTIC\n2e11, .3\n*STEP\n*END STEP\n\
+                 *ELEMENT, TYPE=MASS\n8, 1\n"
+            )
+        ),
+        [
+            "not read: element MASS",
+            "not read: surface TOUCH",
+            "not read: keyword *MATERIAL, *ELASTIC and *STEP",
+            "not read: set without triangles and quadrilaterals: BARS",
+            "not read: node set PIN",
+        ]
+    );
+    let msh = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n3\n0 4 \"pin\"\n2 1 \"plate\"\n3 9 \"solid\"\n\
+               $EndPhysicalNames\n$Nodes\n3\n1 0 0 0\n2 1 0 0\n3 0 1 0\n$EndNodes\n$Elements\n1\n1 2 2 1 1 1 2 3\n\
+               $EndElements\n$Periodic\n0\n$EndPeriodic\n$NodeData\n1\n\"heat\"\n1\n0\n3\n0\n1\n3\n1 1\n2 1\n3 1\n\
+               $EndNodeData\n$NodeData\n1\n\"force\"\n1\n0\n3\n0\n3\n3\n1 1 0 0\n2 1 0 0\n3 1 0 0\n$EndNodeData\n";
+    assert_eq!(
+        told(Format::Msh, msh),
+        [
+            "not read: group of volumes \"solid\"",
+            "not read: section $Periodic",
+            "not read: point data force and heat",
+            "not read: group without members: \"pin\"",
+        ]
+    );
+    let medit = "MeshVersionFormatted 2\nDimension 2\nVertices 3\n0 0 0\n1 0 0\n0 1 0\nTriangles 1\n1 2 3 0\nCorners 1\n1\n\
+                 Ridges 1\n1\nTetrahedra 1\n1 2 3 1 0\nEnd\n";
+    assert_eq!(told(Format::Medit, medit), ["not read: tetrahedron", "not read: section Corners and Ridges"]);
+    let ply = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
+               property uchar red\nelement face 1\nproperty list uchar int vertex_indices\nproperty list uchar float uv\n\
+               element edge 1\nproperty int vertex1\nproperty int vertex2\nend_header\n\
+               0 0 0 255\n1 0 0 255 9\n0 1 0 255\n3 0 1 2 2 .5 .5\n0 1\nmore\n";
+    assert_eq!(
+        told(Format::Ply, ply),
+        [
+            "not read: vertex property red",
+            "not read: face property uv",
+            "not read: element edge",
+            "not read: values of no property, at the end of a line",
+            "not read: lines after the last element",
+        ]
+    );
+    let array = |name: &str, components: usize, values: &str| {
+        format!(
+            "<DataArray type=\"Float64\" Name=\"{name}\" NumberOfComponents=\"{components}\" format=\"ascii\">{values}</DataArray>"
+        )
+    };
+    let vtu = format!(
+        "<VTKFile type=\"UnstructuredGrid\"><UnstructuredGrid><FieldData>{}</FieldData>\
+         <Piece NumberOfPoints=\"3\" NumberOfCells=\"2\"><Points>{}</Points><Cells>{}{}{}</Cells>\
+         <PointData>{}{}</PointData><CellData>{}</CellData></Piece></UnstructuredGrid></VTKFile>",
+        array("time", 1, "0"),
+        array("Points", 3, "0 0 0 1 0 0 0 1 0"),
+        array("connectivity", 1, "0 1 2 0"),
+        array("offsets", 1, "3 4"),
+        array("types", 1, "5 1"),
+        array("heat", 1, "1 2 3"),
+        array("flow", 3, "1 2 3 1 2 3 1 2 3"),
+        array("load", 1, "4 5"),
+    );
+    assert_eq!(
+        told(Format::Vtu, &vtu),
+        [
+            "not read: cell of points alone",
+            "not read: point data flow and heat",
+            "not read: field data time",
+            "not read: cell data load",
+        ]
+    );
+}
+
+#[test]
+fn an_entity_of_several_physical_groups_is_in_all_of_them() {
+    // A face, a line and a point in two groups each.
+    let text = "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$PhysicalNames\n6\n0 1 \"pin\"\n0 2 \"origin\"\n1 1 \"wall\"\n\
+                1 2 \"south\"\n2 1 \"plate\"\n2 2 \"steel\"\n$EndPhysicalNames\n$Entities\n1 1 1 0\n1 0 0 0 2 1 2\n\
+                1 0 0 0 1 0 0 2 1 2 0\n1 0 0 0 1 1 0 2 1 2 0\n$EndEntities\n$Nodes\n1 3 1 3\n2 1 0 3\n1\n2\n3\n0 0 0\n\
+                1 0 0\n0 1 0\n$EndNodes\n$Elements\n3 3 1 3\n0 1 15 1\n1 1\n1 1 1 1\n2 1 2\n2 1 2 1\n3 1 2 3\n$EndElements\n";
+    let mesh = read_bytes("a", text.as_bytes(), Format::Msh).unwrap();
+    assert!(mesh.not_read().is_empty(), "{:?}", mesh.not_read());
+    let groups_of = |dimension: u8, first: Option<u32>| {
+        let further = mesh.members.iter().filter(|m| m.dimension == dimension && m.of == [0]).map(|m| m.tag);
+        let mut tags: Vec<u32> = first.into_iter().chain(further).collect();
+        tags.sort_unstable();
+        tags
+    };
+    assert_eq!(groups_of(0, None), [1, 2]);
+    assert_eq!(groups_of(1, Some(mesh.line_tags[0])), [1, 2]);
+    assert_eq!(groups_of(2, Some(mesh.triangle_tags[0])), [1, 2]);
+}
+
+#[test]
+fn obj_files_of_other_programs_are_the_same_mesh_to_tobj() {
+    for name in ["o_cont.obj", "o_comment.obj", "plate_hole_soup.obj"] {
+        // It takes neither continued lines nor comments after a face.
+        let text = fs::read_to_string(data(name)).unwrap().replace("\\\n", " ").replace("# tri", "");
+        let (models, _) =
+            tobj::load_obj_buf(&mut text.as_bytes(), &tobj::LoadOptions::default(), |_| Ok(Default::default()))
+                .unwrap();
+        let found = models.iter().flat_map(|model| {
+            let position = |k: &u32| [0, 1, 2].map(|axis| model.mesh.positions[3 * *k as usize + axis]);
+            model.mesh.indices.iter().map(position).collect::<Vec<_>>()
+        });
+        assert_eq!(found.collect::<Vec<_>>(), places(&read(name)), "{name}");
+    }
+}
