@@ -538,3 +538,37 @@ fn elements_are_called_as_each_format_counts_them() {
         assert!(output.status.code() == Some(2) && complaint.contains(says), "{complaint}");
     }
 }
+
+#[test]
+fn files_as_people_have_them_convert_and_what_is_not_read_of_them_is_told() {
+    let middles = "*NODE\n1, 0, 0\n2, 2, 0\n3, 2, 2\n4, 0, 2\n5, 1, 0\n6, 2, 1\n7, 1, 1\n8, 1, 2\n9, 0, 1\n\
+                   *ELEMENT, TYPE=CPE6\n1, 1, 2, 3, 5, 6, 7\n2, 1, 3, 4, 7, 8, 9\n";
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("middles.inp"), middles).unwrap();
+    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data");
+    for (name, told) in [
+        ("o_cont.obj", &[][..]),
+        ("o_comment.obj", &[]),
+        ("o_cr.obj", &[]),
+        ("p_cr.ply", &[]),
+        ("p_blankline.ply", &["not read: vertex property nx, ny and nz"]),
+        ("f_trailing.stl", &["not read: 37 bytes after the last triangle"]),
+        ("i_cont.inp", &[]),
+        ("middles.inp", &["not read: mid-side node of an element of order 2 (5 times)"]),
+    ] {
+        let path = if data.join(name).exists() { data.join(name) } else { folder.path().join(name) };
+        let output = Command::new(env!("CARGO_BIN_EXE_quadfront"))
+            .arg("convert")
+            .arg(path)
+            .args(["-o", "quads.msh", "--report", "report.json"])
+            .current_dir(folder.path())
+            .stdin(Stdio::null())
+            .output()
+            .unwrap();
+        assert_eq!(output.status.code(), Some(0), "{name}: {}", String::from_utf8_lossy(&output.stderr));
+        let report = std::fs::read(folder.path().join("report.json")).unwrap();
+        let report: serde_json::Value = serde_json::from_slice(&report).unwrap();
+        assert_eq!(report["repairs"], serde_json::json!(told), "{name}");
+        check(name, folder.path(), &Obj::default());
+    }
+}

@@ -374,17 +374,26 @@ fn an_entity_of_several_physical_groups_is_in_all_of_them() {
                 1 2 \"south\"\n2 1 \"plate\"\n2 2 \"steel\"\n$EndPhysicalNames\n$Entities\n1 1 1 0\n1 0 0 0 2 1 2\n\
                 1 0 0 0 1 0 0 2 1 2 0\n1 0 0 0 1 1 0 2 1 2 0\n$EndEntities\n$Nodes\n1 3 1 3\n2 1 0 3\n1\n2\n3\n0 0 0\n\
                 1 0 0\n0 1 0\n$EndNodes\n$Elements\n3 3 1 3\n0 1 15 1\n1 1\n1 1 1 1\n2 1 2\n2 1 2 1\n3 1 2 3\n$EndElements\n";
-    let mesh = read_bytes("a", text.as_bytes(), Format::Msh).unwrap();
-    assert!(mesh.not_read().is_empty(), "{:?}", mesh.not_read());
-    let groups_of = |dimension: u8, first: Option<u32>| {
-        let further = mesh.members.iter().filter(|m| m.dimension == dimension && m.of == [0]).map(|m| m.tag);
-        let mut tags: Vec<u32> = first.into_iter().chain(further).collect();
-        tags.sort_unstable();
-        tags
-    };
-    assert_eq!(groups_of(0, None), [1, 2]);
-    assert_eq!(groups_of(1, Some(mesh.line_tags[0])), [1, 2]);
-    assert_eq!(groups_of(2, Some(mesh.triangle_tags[0])), [1, 2]);
+    // In version 2 it is listed for each group.
+    let names = &text[text.find("$PhysicalNames").unwrap()..text.find("$Entities").unwrap()];
+    let two = format!(
+        "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n{names}$Nodes\n3\n1 0 0 0\n2 1 0 0\n3 0 1 0\n$EndNodes\n$Elements\n6\n\
+         1 15 2 1 1 1\n2 15 2 2 1 1\n3 1 2 1 1 1 2\n4 1 2 2 1 1 2\n5 2 2 1 1 1 2 3\n6 2 2 2 1 1 2 3\n$EndElements\n"
+    );
+    for text in [text, &two] {
+        let mesh = read_bytes("a", text.as_bytes(), Format::Msh).unwrap();
+        assert!(mesh.not_read().is_empty(), "{:?}", mesh.not_read());
+        assert_eq!((mesh.lines.len(), mesh.triangles.len()), (1, 1));
+        let groups_of = |dimension: u8, first: Option<u32>| {
+            let further = mesh.members.iter().filter(|m| m.dimension == dimension && m.of == [0]).map(|m| m.tag);
+            let mut tags: Vec<u32> = first.into_iter().chain(further).collect();
+            tags.sort_unstable();
+            tags
+        };
+        assert_eq!(groups_of(0, None), [1, 2]);
+        assert_eq!(groups_of(1, Some(mesh.line_tags[0])), [1, 2]);
+        assert_eq!(groups_of(2, Some(mesh.triangle_tags[0])), [1, 2]);
+    }
 }
 
 #[test]

@@ -2,7 +2,7 @@
 //! validates the document. Reads triangles, strips and fans of the default scene (without one, of all scenes), with the
 //! nodes' transforms applied; each node with a mesh becomes a group. Coincident points are welded, since glTF repeats a
 //! point where its normal or texture differs. Deliberately absent: writing (glTF has no quadrilaterals), materials,
-//! skins, morph targets; points and lines are counted as skipped.
+//! skins, morph targets; points and lines are counted as skipped, materials and further attributes told as not read.
 
 mod bytes;
 
@@ -209,6 +209,17 @@ impl Scene<'_> {
                 primitive.indices().or_else(|| primitive.get(&gltf::Semantic::Positions)).map_or(0, |a| a.count());
             *self.skipped.entry(kind).or_default() += count;
             return Ok(());
+        }
+        for (semantic, _) in primitive.attributes() {
+            // Joints and weights belong to skins.
+            use gltf::Semantic::{Joints, Positions, TexCoords, Weights};
+            if !matches!(semantic, Positions | TexCoords(0) | Joints(_) | Weights(_)) {
+                self.mesh.omit("vertex attribute", &semantic.to_string());
+            }
+        }
+        if let Some(index) = primitive.material().index() {
+            let name = primitive.material().name().map_or_else(|| index.to_string(), str::to_owned);
+            self.mesh.omit("material", &name);
         }
         let Some(positions) = primitive.get(&gltf::Semantic::Positions) else { return Ok(()) };
         let group = || shown(self.mesh.groups[tag as usize - 1].name.as_bytes());

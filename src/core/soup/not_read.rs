@@ -1,6 +1,6 @@
 //! What a file has and the mesh made of it does not carry, in words.
 
-use super::mesh_file::{Group, MeshFile, Omitted};
+use super::mesh_file::{ELEMENT_ID, Group, MeshFile, NODE_ID, Omitted};
 
 /// How the words of [`MeshFile::not_read`] begin.
 pub const NOT_READ: &str = "not read: ";
@@ -33,8 +33,12 @@ impl MeshFile {
     /// members. Of many kinds or names, the first ones and how many more there are.
     pub fn not_read(&self) -> Vec<String> {
         let mut omitted = self.omitted.clone();
-        self.point_data.iter().for_each(|data| note(&mut omitted, POINT_DATA, &data.name, 1));
-        self.element_data.iter().for_each(|data| note(&mut omitted, CELL_DATA, &data.name, 1));
+        // Ids belong to the run that wrote them.
+        let is_id = |name: &str| name == ELEMENT_ID || name.starts_with(NODE_ID);
+        for (kind, data) in [(POINT_DATA, &self.point_data), (CELL_DATA, &self.element_data)] {
+            let names = data.iter().map(|data| data.name.as_str()).filter(|name| !is_id(name));
+            names.for_each(|name| note(&mut omitted, kind, name, 1));
+        }
         self.empty_groups().iter().for_each(|name| note(&mut omitted, EMPTY_GROUP, name, 1));
         let mut kinds: Vec<String> = self.skipped.iter().map(|(kind, count)| times(kind, *count)).collect();
         kinds.extend(omitted.iter().map(listing));
@@ -130,7 +134,8 @@ mod tests {
                 group(2, 2, "b"),
             ],
             members: vec![Members { dimension: 0, tag: 1, of: vec![0] }, Members { dimension: 2, tag: 2, of: vec![1] }],
-            point_data: vec![Data { name: "heat".into(), values: vec![] }],
+            point_data: ["node_id_2", "heat"].map(|name| Data { name: name.into(), values: vec![] }).to_vec(),
+            element_data: vec![Data { name: "element_id".into(), values: vec![] }],
             ..Default::default()
         };
         assert_eq!(

@@ -16,7 +16,7 @@ const SEVERAL: u32 = 1 << 31;
 pub(super) struct Grouping {
     /// Version 4: the physical groups of an entity, by dimension and tag.
     physical: FxHashMap<(i64, i64), SmallVec<[u32; 2]>>,
-    /// Those of entities that are in several; the tag of their elements is an index into it above [`SEVERAL`].
+    /// Those of elements that are in several, whose tag is an index into it above [`SEVERAL`].
     several: Vec<SmallVec<[u32; 2]>>,
     /// The points of point elements, with their tags.
     pub points: Vec<(u32, u32)>,
@@ -50,12 +50,33 @@ impl Grouping {
         }
     }
 
-    /// Assigns elements in several groups to regions, and points to their groups.
-    pub fn assign(self, file: &mut MeshFile) {
-        let groups = |tag: u32| match tag.checked_sub(SEVERAL) {
+    /// Adds the group of the last element where it `is_again` the next one: version 2 lists an element of several groups
+    /// once for each. Returns whether that is so, and not one that is there twice in the same group.
+    pub fn takes(&mut self, is_again: bool, tags: &mut [u32], group: u32) -> bool {
+        let Some(tag) = tags.last_mut().filter(|_| is_again && group != 0) else { return false };
+        let mut groups = self.groups(*tag);
+        if groups.is_empty() || groups.contains(&group) {
+            return false;
+        }
+        groups.push(group);
+        if self.several.last() != Some(&groups) {
+            self.several.push(groups);
+        }
+        *tag = SEVERAL + self.several.len() as u32 - 1;
+        true
+    }
+
+    /// The groups that a tag stands for.
+    fn groups(&self, tag: u32) -> SmallVec<[u32; 2]> {
+        match tag.checked_sub(SEVERAL) {
             Some(k) => self.several[k as usize].clone(),
             None => (tag > 0).then_some(tag).into_iter().collect(),
-        };
+        }
+    }
+
+    /// Assigns elements in several groups to regions, and points to their groups.
+    pub fn assign(self, file: &mut MeshFile) {
+        let groups = |tag: u32| self.groups(tag);
         let MeshFile { line_tags, triangle_tags, quad_tags, members, .. } = file;
         let mut points: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
         for &(point, tag) in &self.points {

@@ -385,6 +385,7 @@ impl Reader<'_> {
         let Some(shape) = shape(kind) else {
             return Err(self.fault(format!("Unknown element type {kind}")));
         };
+        let lists_again = self.version == Some(Version::Two);
         match shape {
             Shape::Point => {
                 let [point] = self.corners()?;
@@ -392,21 +393,30 @@ impl Reader<'_> {
             }
             Shape::Line => {
                 let corners = self.corners()?;
-                self.file.lines.push(corners);
-                self.file.line_tags.push(group);
-                self.numbers[0].push(number);
+                let MeshFile { lines, line_tags, .. } = &mut self.file;
+                if !self.grouping.takes(lists_again && lines.last() == Some(&corners), line_tags, group) {
+                    lines.push(corners);
+                    line_tags.push(group);
+                    self.numbers[0].push(number);
+                }
             }
             Shape::Triangle => {
                 let corners = self.corners()?;
-                self.file.triangles.push(corners);
-                self.file.triangle_tags.push(group);
-                self.numbers[1].push(number);
+                let MeshFile { triangles, triangle_tags, .. } = &mut self.file;
+                if !self.grouping.takes(lists_again && triangles.last() == Some(&corners), triangle_tags, group) {
+                    triangles.push(corners);
+                    triangle_tags.push(group);
+                    self.numbers[1].push(number);
+                }
             }
             Shape::Quad => {
                 let corners = self.corners()?;
-                self.file.quads.push(corners);
-                self.file.quad_tags.push(group);
-                self.numbers[2].push(number);
+                let MeshFile { quads, quad_tags, .. } = &mut self.file;
+                if !self.grouping.takes(lists_again && quads.last() == Some(&corners), quad_tags, group) {
+                    quads.push(corners);
+                    quad_tags.push(group);
+                    self.numbers[2].push(number);
+                }
             }
             Shape::HigherOrder => {
                 return Err(self
