@@ -82,5 +82,5 @@ soak:
 licenses:
 	@tools/setup build licenses
 	PATH="$(CURDIR)/target/tools/bin:$$PATH" cargo deny --all-features check licenses bans sources
-	PATH="$(CURDIR)/target/tools/bin:$$PATH" cargo deny --manifest-path tools/web/Cargo.toml check --config deny.toml \
-		licenses bans sources
+	PATH="$(CURDIR)/target/tools/bin:$$PATH" cargo deny --manifest-path tools/web/Cargo.toml --config deny.toml \
+		check licenses bans sources

@@ -8,7 +8,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The rooms of core, from the lowest floor to the highest: a room imports only from rooms before it in this list.
-const FLOORS: [&str; 19] = [
+const FLOORS: [&str; 20] = [
     "fault",
     "progress",
     "kernel",
@@ -19,6 +19,7 @@ const FLOORS: [&str; 19] = [
     "formats",
     "discrete",
     "background",
+    "step",
     "case",
     "front",
     "prepare",

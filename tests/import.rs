@@ -468,3 +468,43 @@ fn what_a_conversion_is_refused_for_is_marked_until_the_mesh_is_taken_otherwise(
     });
     harness.get_by_label("Refused");
 }
+
+#[test]
+fn a_cad_file_is_shown_with_its_faces_and_its_unit_and_converted_in_the_unit_that_is_chosen() {
+    let Some(mut harness) = window() else { return };
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/step/bracket.step");
+    open(&mut harness, &path);
+    for text in ["bracket.step", "Faces on exact surfaces: choose the unit and the sizes.", "The part"] {
+        harness.get_by_label(text);
+    }
+    let facts = |harness: &Window| {
+        let loaded = harness.state().state.run().import.as_ref().unwrap().loaded.clone().unwrap();
+        let part = loaded.part.as_ref().unwrap();
+        (part.faces, part.edges, part.bodies, part.unit.clone(), loaded.extent)
+    };
+    let (faces, edges, bodies, unit, extent) = facts(&harness);
+    assert_eq!((faces, edges, bodies, unit.as_str()), (9, 21, 1, "mm"));
+    harness.get_by_label("9 faces");
+    picture(&mut harness, "part");
+    let mut options = harness.state().state.run().import.as_ref().unwrap().options.clone();
+    options.step.unit = quadfront::core::step::Unit::of_word("m");
+    harness.state_mut().apply(Command::SetImport(Box::new(options), Gesture::Done));
+    shown(&mut harness);
+    let (.., unit, smaller) = facts(&harness);
+    assert_eq!(unit, "m");
+    assert!((smaller * 1000.0 - extent).length() < 1e-6 * extent.length());
+    convert(&mut harness);
+    settle(&mut harness);
+    let run = harness.state().state.current_run().unwrap();
+    assert!(run.case.notes.contains("lengths in m."), "{}", run.case.notes);
+    assert_eq!(harness.state().state.run().opened.as_ref().unwrap().background.names.faces.len(), 9);
+    // A file that is damaged is refused, with its line.
+    let folder = tempfile::tempdir().unwrap();
+    let damaged = folder.path().join("damaged.stp");
+    let text = std::fs::read_to_string(&path).unwrap().replace("CYLINDRICAL_SURFACE", "OFFSET_SURFACE");
+    std::fs::write(&damaged, text).unwrap();
+    harness.state_mut().apply(Command::Open(Source::named(&damaged.display().to_string())));
+    until(&mut harness, "it is refused", |window| !window.state().state.view().faults.is_empty());
+    let fault = harness.state().state.view().faults[0].to_string();
+    assert!(fault.contains("damaged.stp, line") && fault.contains("OFFSET_SURFACE"), "{fault}");
+}

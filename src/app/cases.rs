@@ -1,20 +1,37 @@
-//! `cases`: the built-in cases.
+//! `cases`: the built-in cases, and the case of a CAD file.
+
+use std::path::Path;
 
 use serde_json::json;
 
 use super::command_line::CasesArguments;
+use super::input;
 use super::output::Target;
-use crate::core::case::built_in;
+use crate::core::case::{ImportOptions, built_in};
 use crate::core::fault::Fault;
+use crate::core::formats::save::load;
 use crate::core::kernel::spelling::nearest;
+use crate::core::step::is_step;
 
 /// Lists the built-in cases, or prints the file of one.
 pub(super) fn cases(arguments: &CasesArguments) -> Result<(), Fault> {
-    let text = match &arguments.name {
-        Some(name) => file(name)?.to_owned(),
-        None => list(arguments.json)?,
+    let text = match (&arguments.name, &arguments.from) {
+        (Some(name), _) => file(name)?.to_owned(),
+        (None, Some(path)) => of_step(path, &arguments.mesh.options())?,
+        (None, None) => list(arguments.json)?,
     };
     Target::StandardOutput.write(|out| out.write_all(text.as_bytes()))
+}
+
+/// The text of the case of a STEP file.
+fn of_step(path: &Path, options: &ImportOptions) -> Result<String, Fault> {
+    let place = path.display().to_string();
+    if !is_step(path) {
+        return Err(Fault::new("This is not a STEP file by its extension")
+            .at(place)
+            .remedy("Name a .step, .stp or .p21"));
+    }
+    Ok(input::step_case(&load(path)?, &path.file_stem().unwrap_or_default().to_string_lossy(), &place, options)?.text)
 }
 
 fn file(name: &str) -> Result<&'static str, Fault> {

@@ -10,15 +10,16 @@ use super::figure::FigureOptions;
 use super::figure::every::Every;
 #[cfg(feature = "window")]
 use super::film::AnimateArguments;
-use super::input::{InputFormat, Stops, Until, input_format, mesh_format, mesh_use, series, setting, stops, until};
+use super::input::{InputFormat, Stops, Until, input_format, mesh_format, series, setting, stops, until};
 use super::output::Target;
-use crate::core::case::{ImportOptions, MeshUse};
 use crate::core::fault::Fault;
 use crate::core::formats::Format;
 use crate::core::question::Series;
 use crate::core::record::report::figures::{FIGURES, Figure};
 use crate::core::run::Run;
-use crate::core::soup::Ignored;
+use mesh::MeshArguments;
+
+mod mesh;
 
 /// quadfront: anisotropic quadrilateral meshes after Lee & Lee (2002).
 #[derive(Parser)]
@@ -69,10 +70,10 @@ pub(super) enum Command {
 #[derive(Args, Default)]
 pub(super) struct Source {
     /// A built-in case, a case file or a run file (.toml), a mesh (.msh .mesh .vtu .obj .inp .ply .stl .gltf .glb), a
-    /// figure with an embedded run (.svg .png .pdf), or - for standard input
+    /// CAD file (.step .stp .p21), a figure with an embedded run (.svg .png .pdf), or - for standard input
     #[arg(value_name = "CASE|MESH|FIGURE")]
     pub input: String,
-    /// Format of standard input: toml (a case), msh, mesh, vtu, obj, inp, ply, stl, gltf, glb
+    /// Format of standard input: toml (a case), step, msh, mesh, vtu, obj, inp, ply, stl, gltf, glb
     #[arg(long, value_name = "FORMAT", value_parser = input_format)]
     pub from: Option<InputFormat>,
     /// Metric at the nodes of MESH (Medit .sol)
@@ -134,86 +135,6 @@ impl Overrides {
         }
         run.case.parameters = parameters.clone();
         Ok(())
-    }
-}
-
-/// How a mesh is imported.
-#[derive(Args, Default)]
-pub(super) struct MeshArguments {
-    /// Use of MESH: convert its triangles, or remesh its shape [default: triangles in the plane, shape in space]
-    #[arg(long = "use", value_name = "triangles|shape", value_parser = mesh_use)]
-    used: Option<MeshUse>,
-    /// With --use triangles, divide one side of each border that has an odd number of sides, instead of refusing MESH
-    #[arg(long)]
-    split_odd: bool,
-    /// Element size on MESH; with --curvature that of flat regions
-    #[arg(long, value_name = "H")]
-    mesh_size: Option<f64>,
-    /// Smaller elements where MESH or its border is curved: distance of chord and arc, divided by the radius (0.01)
-    #[arg(long, value_name = "ERR", requires = "mesh_size")]
-    curvature: Option<f64>,
-    /// Keep edges of MESH with a fold beyond this angle, in degrees [default: 40]
-    #[arg(long, value_name = "DEGREES")]
-    feature_angle: Option<f64>,
-    /// Limit of the distortion of shapes where MESH is flattened [default: 4]
-    #[arg(long, value_name = "RATIO")]
-    chart_stretch: Option<f64>,
-    /// Multiply the coordinates of MESH (0.001: from millimetres to metres)
-    #[arg(long, value_name = "FACTOR")]
-    scale: Option<f64>,
-    /// Keep the shape of borders of MESH: distance of chord and arc, divided by the radius [default: 0.1]
-    #[arg(long, value_name = "ERR")]
-    chord: Option<f64>,
-    /// Read MESH as if it had no groups, or not those of these names
-    #[arg(long, value_name = "NAME,...", num_args = 0..=1, require_equals = true, default_missing_value = "")]
-    ignore_groups: Option<String>,
-}
-
-impl MeshArguments {
-    /// The options that they set.
-    pub fn options(&self) -> ImportOptions {
-        let &MeshArguments {
-            used, split_odd, mesh_size, curvature, feature_angle, chart_stretch, scale, chord, ..
-        } = self;
-        let ignore_groups = match self.ignore_groups.as_deref() {
-            None => Ignored::Nothing,
-            Some("") => Ignored::All,
-            Some(names) => Ignored::Named(names.split(',').map(|name| name.trim().to_owned()).collect()),
-        };
-        ImportOptions {
-            used,
-            split_odd,
-            mesh_size,
-            curvature,
-            feature_angle,
-            chart_stretch,
-            scale,
-            chord,
-            ignore_groups,
-        }
-    }
-
-    /// The options as command-line arguments.
-    pub fn words(&self) -> Vec<String> {
-        let &MeshArguments {
-            used, split_odd, mesh_size, curvature, feature_angle, chart_stretch, scale, chord, ..
-        } = self;
-        let number = |name: &str, value: Option<f64>| value.map(|value| format!("--{name}={value}"));
-        let words = [
-            used.map(|used| format!("--use={}", used.name())),
-            split_odd.then(|| "--split-odd".to_owned()),
-            number("mesh-size", mesh_size),
-            number("curvature", curvature),
-            number("feature-angle", feature_angle),
-            number("chart-stretch", chart_stretch),
-            number("scale", scale),
-            number("chord", chord),
-            self.ignore_groups.as_ref().map(|names| match names.as_str() {
-                "" => "--ignore-groups".to_owned(),
-                names => format!("--ignore-groups={names}"),
-            }),
-        ];
-        words.into_iter().flatten().collect()
     }
 }
 
@@ -474,6 +395,11 @@ pub(super) struct CasesArguments {
     /// Print the file of one case, as a start for your own
     #[arg(value_name = "CASE", conflicts_with = "json")]
     pub name: Option<String>,
+    /// Print the case of a STEP file: its surfaces, edges and faces by name, as a start for your own sizes
+    #[arg(long, value_name = "STEP", conflicts_with_all = ["json", "name"])]
+    pub from: Option<PathBuf>,
+    #[command(flatten)]
+    pub mesh: MeshArguments,
 }
 
 #[cfg(test)]

@@ -13,14 +13,19 @@ use crate::core::case::{Case, ImportOptions, MeshUse, built_in};
 use crate::core::case::{DomainSource, Taking};
 use crate::core::convert::Stop;
 use crate::core::fault::{Fault, FaultKind};
+#[cfg(feature = "window")]
+use crate::core::formats::save::load_watched;
 use crate::core::formats::save::{self, load};
 use crate::core::formats::{Format, format};
 use crate::core::kernel::spelling::nearest;
-use crate::core::progress::Watch;
+use crate::core::progress::{Nobody, Reading, Watch};
 use crate::core::question::Series;
 use crate::core::record::{figure, run_file};
 use crate::core::run::{Run, Shown};
 use crate::core::soup::MeshFile;
+#[cfg(feature = "window")]
+use crate::core::step::Part;
+use crate::core::step::{self, Unit};
 
 /// The name of standard input in messages.
 const STANDARD_INPUT: &str = "standard input";
@@ -32,6 +37,8 @@ pub(super) enum InputFormat {
     Case,
     /// A mesh.
     Mesh(Format),
+    /// A CAD file.
+    Step,
 }
 
 impl InputFormat {
@@ -39,6 +46,7 @@ impl InputFormat {
     pub fn word(self) -> &'static str {
         match self {
             InputFormat::Case => "toml",
+            InputFormat::Step => "step",
             InputFormat::Mesh(format) => format.extension(),
         }
     }
@@ -46,7 +54,11 @@ impl InputFormat {
 
 /// Parses `--from` where cases are possible.
 pub(super) fn input_format(text: &str) -> Result<InputFormat, String> {
-    if text == "toml" { Ok(InputFormat::Case) } else { mesh_format(text).map(InputFormat::Mesh) }
+    match text {
+        "toml" => Ok(InputFormat::Case),
+        "step" => Ok(InputFormat::Step),
+        _ => mesh_format(text).map(InputFormat::Mesh),
+    }
 }
 
 /// Parses the name of a mesh format.
@@ -54,6 +66,17 @@ pub(super) fn mesh_format(text: &str) -> Result<Format, String> {
     let known = || Format::ALL.map(Format::extension).join(", ");
     let found = Format::ALL.into_iter().find(|format| format.extension() == text);
     found.ok_or_else(|| format!("the mesh formats are {}", known()))
+}
+
+/// Parses `--unit`.
+pub(super) fn unit(text: &str) -> Result<Unit, String> {
+    Unit::of_word(text).ok_or_else(|| format!("write one of {}", Unit::ALL.map(Unit::word).join(", ")))
+}
+
+/// Parses a length.
+pub(super) fn length(text: &str) -> Result<f64, String> {
+    let found: Option<f64> = text.parse().ok().filter(|length: &f64| length.is_finite() && *length > 0.0);
+    found.ok_or_else(|| "write a positive number".to_owned())
 }
 
 /// Parses `--predict`.
@@ -149,6 +172,11 @@ pub(super) fn read(source: &Source, mesh: &ImportOptions) -> Result<Input, Fault
 /// file is for the window to show.
 #[cfg(feature = "window")]
 pub(super) fn check(input: &str, mesh: &ImportOptions, overrides: &Overrides) -> Result<(), Fault> {
+    let is_part = step::is_step(Path::new(input)) && save::is_file(Path::new(input));
+    if is_part && mesh.check_for_step().is_ok() {
+        // The window reads it, with progress.
+        return Ok(());
+    }
     match run_of(Path::new(input), mesh, &Overrides::default()) {
         Err(_) if mesh.lines().is_empty() && save::is_file(Path::new(input)) => Ok(()),
         Err(fault) => Err(fault),
@@ -179,6 +207,9 @@ fn read_plain(source: &Source, mesh: &ImportOptions) -> Result<Input, Fault> {
         Kind::StandardInput(InputFormat::Case) => {
             case_or_run(&standard_input()?, "case", STANDARD_INPUT, Path::new(""))?
         }
+        Kind::StandardInput(InputFormat::Step) => {
+            return Ok(alone(step_case(&standard_input()?, "standard-input", STANDARD_INPUT, mesh)?));
+        }
         Kind::StandardInput(InputFormat::Mesh(format)) => {
             // `core` reads meshes from files; the name of the file appears in messages.
             let refuse = |error: std::io::Error| {
@@ -191,6 +222,10 @@ fn read_plain(source: &Source, mesh: &ImportOptions) -> Result<Input, Fault> {
             return Ok(Input::of(run, Some(folder)));
         }
         Kind::File(path, InputFormat::Mesh(_)) => return Ok(alone(mesh.case(path, source.sol.clone())?)),
+        Kind::File(path, InputFormat::Step) => {
+            let stem = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+            return Ok(alone(step_case(&load(&path)?, &stem, name, mesh)?));
+        }
         Kind::Figure(path) => figure::read(&path)?,
         Kind::File(path, InputFormat::Case) => {
             let stem = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
@@ -280,6 +315,9 @@ fn kind(name: &str, from: Option<InputFormat>) -> Result<Kind, Fault> {
     if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml")) {
         return Ok(Kind::File(path, InputFormat::Case));
     }
+    if step::is_step(&path) {
+        return Ok(Kind::File(path, InputFormat::Step));
+    }
     if figure::is_figure(&path) {
         return Ok(Kind::Figure(path));
     }
@@ -299,6 +337,19 @@ fn kind(name: &str, from: Option<InputFormat>) -> Result<Kind, Fault> {
             Err(fault)
         }
     }
+}
+
+/// The case and the part of a STEP file.
+#[cfg(feature = "window")]
+pub(super) fn read_step(path: &Path, options: &ImportOptions, watch: &mut dyn Watch) -> Result<(Case, Part), Fault> {
+    let pace = Reading::watched(watch);
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+    options.case_of_step(&load_watched(path, &pace)?, &stem, &path.display().to_string(), &pace)
+}
+
+/// The case of a STEP file.
+pub(super) fn step_case(bytes: &[u8], name: &str, place: &str, options: &ImportOptions) -> Result<Case, Fault> {
+    options.case_of_step(bytes, name, place, &Reading::watched(&mut Nobody)).map(|read| read.0)
 }
 
 fn standard_input() -> Result<Vec<u8>, Fault> {

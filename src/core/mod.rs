@@ -11,6 +11,7 @@ pub mod soup;
 pub mod formats;
 pub mod discrete;
 pub mod background;
+pub mod step;
 pub mod case;
 pub mod front;
 pub mod prepare;

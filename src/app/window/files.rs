@@ -22,6 +22,7 @@ use crate::core::case::built_in;
 use crate::core::fault::Fault;
 use crate::core::formats::{Format, save};
 use crate::core::record::figure::{self, KEYWORD};
+use crate::core::step;
 
 pub use dialog::Dialog;
 
@@ -87,7 +88,7 @@ pub fn answers<T>(waiting: &mut Vec<Receiver<T>>) -> Vec<T> {
 /// Extensions of files that can be opened.
 fn extensions() -> Vec<&'static str> {
     let meshes = Format::ALL.into_iter().map(Format::extension);
-    ["toml", "md"].into_iter().chain(figure::EXTENSIONS).chain(meshes).collect()
+    ["toml", "md"].into_iter().chain(figure::EXTENSIONS).chain(meshes).chain(step::EXTENSIONS).collect()
 }
 
 /// Of files that were given together the one to open: a case, or else the first that can be opened by itself.

@@ -6,7 +6,7 @@ mod preview;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-pub use preview::{KINDS, Loaded, Shown};
+pub use preview::{KINDS, Loaded, PartFacts, Shown};
 use preview::{Preview, PreviewNews, Wanted};
 
 use super::session::{Direction, Wake};
@@ -18,6 +18,7 @@ pub use crate::core::case::ImportOptions;
 use crate::core::case::{MeshUse, Taking};
 use crate::core::fault::Fault;
 use crate::core::soup::Ignored;
+use crate::core::step::{StepOptions, is_step};
 
 /// How many changes can be undone.
 const UNDO: usize = 100;
@@ -43,8 +44,8 @@ pub struct Import {
     /// How the parameters of its run are changed.
     pub overrides: Overrides,
     preview: Preview,
-    /// The groups without which the mesh was read.
-    without: Ignored,
+    /// The options with which the file was read.
+    read_with: (Ignored, StepOptions),
     wake: Wake,
     /// The mesh with its repairs, once it has been read.
     pub loaded: Option<Arc<Loaded>>,
@@ -69,8 +70,8 @@ impl Import {
     /// Starts to read a mesh; `generation` is at least the number of any picture before.
     pub fn begin(path: PathBuf, options: ImportOptions, generation: u64, wake: Wake) -> Import {
         Import {
-            preview: Preview::of(path.clone(), options.ignore_groups.clone(), wake.clone()),
-            without: options.ignore_groups.clone(),
+            preview: Preview::of(path.clone(), options.clone(), wake.clone()),
+            read_with: read_with(&options),
             wake,
             path,
             options,
@@ -94,6 +95,11 @@ impl Import {
         input::taking_of(&self.path, &self.options).unwrap_or_default()
     }
 
+    /// Whether it is a CAD file.
+    pub fn is_part(&self) -> bool {
+        is_step(&self.path)
+    }
+
     /// What the mesh is used for, once it is known.
     pub fn used(&self) -> MeshUse {
         self.taking().used.unwrap_or_else(|| self.use_by_default())
@@ -102,7 +108,7 @@ impl Import {
     /// The use by default.
     pub fn use_by_default(&self) -> MeshUse {
         match &self.loaded {
-            Some(loaded) if loaded.is_plane => MeshUse::Triangles,
+            Some(loaded) if loaded.is_plane && !self.is_part() => MeshUse::Triangles,
             _ => MeshUse::Shape,
         }
     }
@@ -176,10 +182,10 @@ impl Import {
     /// Takes in what the preview reports, and asks for another picture if the options have changed. Returns why the
     /// mesh cannot be read, if that has turned out.
     pub fn look(&mut self, dark: bool) -> Option<Fault> {
-        if self.without != self.options.ignore_groups {
-            // The repair depends on the groups.
-            self.without = self.options.ignore_groups.clone();
-            self.preview = Preview::of(self.path.clone(), self.without.clone(), self.wake.clone());
+        if self.read_with != read_with(&self.options) {
+            // The repair depends on the groups, and a part on its unit.
+            self.read_with = read_with(&self.options);
+            self.preview = Preview::of(self.path.clone(), self.options.clone(), self.wake.clone());
             (self.loaded, self.shown, self.wanted, self.refused) = (None, None, None, None);
         }
         let mut unreadable = None;
@@ -202,7 +208,9 @@ impl Import {
             let marks = self.refused.as_ref().map_or_else(Arc::default, |fault| fault.shapes.clone().into());
             // The colours of charts would hide the elements for which a mesh is refused.
             let bound = (self.has_charts() && self.refused.is_none()).then(|| taking.bound());
-            let wanted = Wanted { feature_angle: taking.feature_angle, bound, marks, dark };
+            // The edges of a part are those between its faces.
+            let feature_angle = if self.is_part() { std::f64::consts::PI } else { taking.feature_angle };
+            let wanted = Wanted { feature_angle, bound, marks, dark };
             if self.wanted.as_ref() != Some(&wanted) {
                 // Up to two pictures will be made.
                 self.generation += 2;
@@ -215,6 +223,11 @@ impl Import {
         }
         unreadable
     }
+}
+
+/// The options that a file is read with.
+fn read_with(options: &ImportOptions) -> (Ignored, StepOptions) {
+    (options.ignore_groups.clone(), options.step)
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! Division of curves at equal metric arclength, with even loops (docs/algorithm.md, "Curves divided at equal metric
 //! length", "Even loops").
 
+mod forced;
 mod gaps;
 mod hard;
 mod loops;
@@ -20,7 +21,6 @@ use crate::core::geometry::assembly::{loop_name, placed};
 use crate::core::geometry::curve::distance_to_segment;
 use crate::core::geometry::{CurveId, DirectedCurve, Domain, DomainCurve, Turning};
 use crate::core::kernel::DisjointSets;
-use crate::core::metric::measure::length;
 use crate::core::metric::{ForcedSide, MetricSource};
 
 /// More segments than this on all curves together are refused, since such sizes must be an error.
@@ -440,44 +440,12 @@ impl<'a> Division<'a> {
                 }
             }
             chain.push(curve.ends[1]);
-            if is_first {
-                self.push_forced(&mut divided, c, &chain)?;
-            }
+            self.push_forced(&mut divided, c, &chain)?;
             divided.chains.push(chain);
             divided.parameters.push([0.0].into_iter().chain(parameters.iter().copied()).chain([1.0]).collect());
         }
         hard::place(self.domain, &mut divided);
         Ok(divided)
-    }
-
-    /// Notes the segments of a curve that are much shorter than the metric asks for.
-    ///
-    /// # Errors
-    /// If the metric fails.
-    fn push_forced(&self, divided: &mut DividedDomain, c: usize, chain: &[u32]) -> Result<(), Fault> {
-        let at = |node: u32| match divided.xyz.get(node as usize) {
-            Some(&xyz) => xyz,
-            None => divided.nodes[node as usize].extend(0.0),
-        };
-        let (mut from, mut forced) = (0, Vec::new());
-        for piece in &self.pieces[c] {
-            let to = from + piece.segments as usize;
-            for w in chain[from..=to].windows(2) {
-                let metric_length = if self.turns[c] {
-                    // The length of the piece is not that of its sizes.
-                    let [a, b] = [w[0], w[1]].map(|node| divided.nodes[node as usize]);
-                    length(&self.metric.metric(a.midpoint(b))?, b - a)
-                } else {
-                    piece.segment_length()
-                };
-                if metric_length < SHORT {
-                    forced.push(ForcedSide::standing([at(w[0]), at(w[1])], metric_length));
-                }
-            }
-            from = to;
-        }
-        divided.forced.extend(forced.into_iter().filter(|side| side.size > 0.0));
-        Ok(())
     }
 }
 

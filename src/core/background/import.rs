@@ -351,7 +351,7 @@ impl<'a> Import<'a> {
             }
         }
         Repair::PointOffCorners.report(lost, &mut self.repairs);
-        let further = Further { lines: self.file.further_lines(), faces, points };
+        let further = Further { lines: self.file.further_lines(), faces, points, ..Further::default() };
         Imported { set, origin, regions: names, lines: self.groups, further, repairs: self.repairs }
     }
 }

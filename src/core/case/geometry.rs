@@ -1,5 +1,6 @@
 //! `[[curve]]` and `[[face]]` of a case file.
 
+use std::collections::BTreeSet;
 use std::f64::consts::TAU;
 
 use super::table::{Table, Value};
@@ -22,12 +23,32 @@ pub(super) fn curves(document: &Table<'_>) -> Result<Vec<CurveSpec>, Fault> {
     Ok(curves)
 }
 
+/// The names of the curves of a case.
+pub(super) struct Names<'a>(BTreeSet<&'a str>);
+
+impl<'a> Names<'a> {
+    /// All of these.
+    pub fn of(names: impl Iterator<Item = &'a str>) -> Names<'a> {
+        Names(names.collect())
+    }
+
+    /// Whether it is one of them.
+    pub fn has(&self, name: &str) -> bool {
+        self.0.contains(name)
+    }
+
+    /// All of them, in alphabetical order.
+    pub fn all(&self) -> impl Iterator<Item = &'a str> {
+        self.0.iter().copied()
+    }
+}
+
 /// Reads the faces, whose curves must exist.
 pub(super) fn faces(document: &Table<'_>, curves: &[CurveSpec]) -> Result<Vec<FaceSpec>, Fault> {
-    let names: Vec<&str> = curves.iter().map(|c| c.name.as_str()).collect();
+    let names = Names::of(curves.iter().map(|c| c.name.as_str()));
     let mut faces = Vec::new();
     for table in document.tables("face")? {
-        table.only(&["name", "outer", "holes", "cracks", "repeated"])?;
+        table.only(&["name", "outer", "holes", "cracks", "repeated", "groups"])?;
         let outer = known_curves(&table.need("outer", "[\"south\", \"east\", \"north\", \"west\"]")?, &names)?;
         faces.push(face(&table, outer, &names)?);
     }
@@ -35,7 +56,7 @@ pub(super) fn faces(document: &Table<'_>, curves: &[CurveSpec]) -> Result<Vec<Fa
 }
 
 /// Reads the rest of a face, after its outer loop.
-pub(super) fn face(table: &Table<'_>, outer: Vec<String>, names: &[&str]) -> Result<FaceSpec, Fault> {
+pub(super) fn face(table: &Table<'_>, outer: Vec<String>, names: &Names<'_>) -> Result<FaceSpec, Fault> {
     let name = name(table)?;
     let some = |key| table.get(key).map_or(Ok(Vec::new()), |value| known_curves(&value, names));
     let holes = match table.get("holes") {
@@ -47,19 +68,20 @@ pub(super) fn face(table: &Table<'_>, outer: Vec<String>, names: &[&str]) -> Res
         }
     };
     let (cracks, repeated) = (some("cracks")?, some("repeated")?);
-    Ok(FaceSpec { name, outer, holes, cracks, repeated, place: table.place() })
+    let groups = table.get("groups").map_or(Ok(Vec::new()), |value| value.texts())?;
+    Ok(FaceSpec { name, outer, holes, cracks, repeated, groups, place: table.place() })
 }
 
 /// Reads a list of names of existing curves; edges of whole surfaces, such as "ball: v0", are checked later.
-pub(super) fn known_curves(value: &Value<'_>, curves: &[&str]) -> Result<Vec<String>, Fault> {
+pub(super) fn known_curves(value: &Value<'_>, curves: &Names<'_>) -> Result<Vec<String>, Fault> {
     let names = value.texts()?;
     if names.is_empty() {
         return Err(value
             .fault(format!("{} is empty", value.key()))
             .remedy("Name at least one curve, or leave it out"));
     }
-    match names.iter().find(|name| !name.contains(": ") && !curves.contains(&name.as_str())) {
-        Some(name) => Err(value.unknown("curve", name, curves.iter().copied())),
+    match names.iter().find(|name| !name.contains(": ") && !curves.has(name)) {
+        Some(name) => Err(value.unknown("curve", name, curves.all())),
         None => Ok(names),
     }
 }

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use super::{Case, DomainSource, MeshSource, MeshUse, VERSION};
 use crate::core::fault::Fault;
 use crate::core::soup::Ignored;
+use crate::core::step::StepOptions;
 
 /// With [`ImportOptions::curvature`], the smallest size is [`ImportOptions::mesh_size`] divided by this.
 const FINEST: f64 = 100.0;
@@ -31,6 +32,8 @@ pub struct ImportOptions {
     pub chord: Option<f64>,
     /// The groups of the mesh that are ignored.
     pub ignore_groups: Ignored,
+    /// How a CAD file is read.
+    pub step: StepOptions,
 }
 
 impl ImportOptions {

@@ -1,16 +1,16 @@
 //! `[[metric]]` of a case file.
 
-use super::geometry::known_curves;
+use super::geometry::{Names, known_curves};
 use super::table::{Table, Value};
 use crate::core::fault::Fault;
 use crate::core::metric::FieldSpec;
 
 /// Reads the metric fields; curves named by boundary layers must exist.
-pub(super) fn fields(document: &Table<'_>, curves: &[&str]) -> Result<Vec<FieldSpec>, Fault> {
+pub(super) fn fields(document: &Table<'_>, curves: &Names<'_>) -> Result<Vec<FieldSpec>, Fault> {
     document.tables("metric")?.iter().map(|table| field(table, curves)).collect()
 }
 
-fn field(table: &Table<'_>, curves: &[&str]) -> Result<FieldSpec, Fault> {
+fn field(table: &Table<'_>, curves: &Names<'_>) -> Result<FieldSpec, Fault> {
     let kind = table.need("kind", "\"formula\"")?;
     match kind.text()? {
         "uniform" => {

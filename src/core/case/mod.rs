@@ -13,6 +13,7 @@ mod metric;
 mod points;
 mod taking;
 mod import_options;
+mod step_part;
 pub mod built_in;
 
 use std::path::{Path, PathBuf};
@@ -104,6 +105,8 @@ pub struct Case {
     pub ignore_groups: Ignored,
     /// The text of the file, for reports; empty for a mesh without a case file.
     pub text: String,
+    /// What was mended or left out when it was made of a CAD file: sentences without a full stop.
+    pub told: Vec<String>,
 }
 
 impl Case {
@@ -145,7 +148,7 @@ impl Case {
     fn parsed(text: &str, name: &str, file: &str, folder: &Path) -> Result<Case, Fault> {
         // Some editors write a byte order mark.
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-        let source = Source { file, text };
+        let source = Source::new(file, text);
         let remedy = |fault: Fault| fault.remedy("See assets/cases/README.md for the format of a case");
         let document = source.parse().map_err(remedy)?;
         let table = Table::document(&source, &document);
@@ -178,10 +181,10 @@ impl Case {
         ])?;
         let word = |key| table.get(key).map(|v| v.text()).transpose();
         let domain = domain(&table, folder)?;
-        let curves: Vec<&str> = match &domain {
-            DomainSource::Curves { curves, .. } => curves.iter().map(|c| c.name.as_str()).collect(),
-            DomainSource::Surfaces(spec) => spec.curves.iter().map(|c| c.name.as_str()).collect(),
-            DomainSource::Elements { .. } | DomainSource::Mesh { .. } => Vec::new(),
+        let curves = match &domain {
+            DomainSource::Curves { curves, .. } => geometry::Names::of(curves.iter().map(|c| c.name.as_str())),
+            DomainSource::Surfaces(spec) => geometry::Names::of(spec.curves.iter().map(|c| c.name.as_str())),
+            DomainSource::Elements { .. } | DomainSource::Mesh { .. } => geometry::Names::of(std::iter::empty()),
         };
         let fields = metric::fields(&table, &curves)?;
         let points = points::points(&table)?;
@@ -207,6 +210,7 @@ impl Case {
             points,
             fields,
             text: text.to_owned(),
+            told: Vec::new(),
         })
     }
 
@@ -251,6 +255,7 @@ impl Case {
             split_odd: false,
             ignore_groups: Ignored::Nothing,
             text: String::new(),
+            told: Vec::new(),
         }
     }
 }
@@ -306,7 +311,6 @@ fn domain(table: &Table<'_>, folder: &Path) -> Result<DomainSource, Fault> {
         }
     }
     if table.get("surface").is_some() {
-        only_curves("surface", &["tolerance"])?;
         let complex = surfaces::complex(table)?;
         if complex.faces.is_empty() {
             return Err(table.fault("The case has no face").remedy("Add [[face]] with a name and a surface"));

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::geometry::{self, corner_angle, known_curves, name, shape_of};
+use super::geometry::{self, Names, corner_angle, known_curves, name, shape_of};
 use super::table::{Table, Value};
 use crate::core::fault::Fault;
 use crate::core::geometry::{
@@ -26,15 +26,41 @@ pub(super) fn complex(document: &Table<'_>) -> Result<ComplexSpec, Fault> {
             place: table.place(),
         });
     }
-    let names: Vec<&str> = curves.iter().map(|c: &SpaceCurveSpec| c.name.as_str()).collect();
+    let names = Names::of(curves.iter().map(|c: &SpaceCurveSpec| c.name.as_str()));
     let mut faces = Vec::new();
     for table in document.tables("face")? {
-        table.only(&["name", "surface", "outer", "holes", "cracks", "repeated"])?;
+        table.only(&["name", "surface", "outer", "holes", "loops", "reversed", "cracks", "repeated", "groups"])?;
         let surface = known_surface(&table.need("surface", "\"plate\"")?, &surfaces)?;
         let outer = table.get("outer").map_or(Ok(Vec::new()), |value| known_curves(&value, &names))?;
-        faces.push(SurfaceFaceSpec { surface, face: geometry::face(&table, outer, &names)? });
+        let loops = table.get("loops").map_or(Ok(Vec::new()), |value| directed_loops(&value, &names))?;
+        let beside = ["outer", "holes", "cracks", "repeated"].into_iter().find(|key| table.get(key).is_some());
+        if let (false, Some(key)) = (loops.is_empty(), beside) {
+            let fault = table.fault(format!("The face has loops and {key}"));
+            return Err(fault.remedy("loops has all curves of a face, the outer ones and the holes"));
+        }
+        let reversed = table.get("reversed").map_or(Ok(false), |value| value.flag())?;
+        faces.push(SurfaceFaceSpec { surface, face: geometry::face(&table, outer, &names)?, loops, reversed });
     }
-    Ok(ComplexSpec { surfaces, curves, faces })
+    let tolerance = document.get("tolerance").map(|value| value.positive()).transpose()?;
+    Ok(ComplexSpec { surfaces, curves, faces, tolerance })
+}
+
+/// Loops of directed curves: a minus before a name means against the curve.
+fn directed_loops(value: &Value<'_>, names: &Names<'_>) -> Result<Vec<Vec<(String, bool)>>, Fault> {
+    let wrong = |_| value.wrong("a list of lists of names", "loops = [[\"south\", \"-east\"], [\"hole\"]]");
+    let directed = |ring: &Value<'_>| -> Result<Vec<(String, bool)>, Fault> {
+        let directed = |name: String| match name.strip_prefix('-') {
+            Some(own) if !names.has(&name) => (own.to_owned(), false),
+            _ => (name, true),
+        };
+        let ring: Vec<(String, bool)> = ring.texts()?.into_iter().map(directed).collect();
+        match ring.iter().find(|step| !names.has(&step.0)) {
+            _ if ring.is_empty() => Err(value.fault("A loop has no curves").remedy("Name at least one curve in it")),
+            Some((name, _)) => Err(value.unknown("curve", name, names.all())),
+            None => Ok(ring),
+        }
+    };
+    value.list().map_err(wrong)?.iter().map(directed).collect()
 }
 
 fn known_surface(value: &Value<'_>, surfaces: &[SurfaceSpec]) -> Result<String, Fault> {
@@ -91,7 +117,9 @@ fn surface(table: &Table<'_>) -> Result<SurfaceShape, Fault> {
         }
         shape @ ("cylinder" | "cone") => {
             turning(if shape == "cone" { &["radius", "top_radius", "height"] } else { &["radius", "height"] })?;
-            let radius = table.need("radius", "1")?.positive()?;
+            let radius = table.need("radius", "1")?;
+            // A cone may have its apex at its foot.
+            let radius = if shape == "cone" { radius.number()? } else { radius.positive()? };
             let top = match (shape, table.get("top_radius")) {
                 ("cylinder", _) => radius,
                 (_, None) => 0.0,

@@ -12,16 +12,23 @@ use crate::core::kernel::spelling::nearest;
 /// The text that tables and values point into, with the name that messages give it.
 pub(in crate::core) struct Source<'a> {
     /// Name of the file for messages.
-    pub file: &'a str,
+    file: &'a str,
     /// Its whole text.
-    pub text: &'a str,
+    text: &'a str,
+    /// The bytes at which its lines end, ascending.
+    ends: Vec<usize>,
 }
 
-impl Source<'_> {
+impl<'a> Source<'a> {
+    /// A text, and the name that messages give it.
+    pub fn new(file: &'a str, text: &'a str) -> Source<'a> {
+        let ends = text.bytes().enumerate().filter(|(_, byte)| *byte == b'\n').map(|(at, _)| at).collect();
+        Source { file, text, ends }
+    }
+
     /// The place of a byte of the text: `plate.toml, line 14`.
     pub fn place(&self, byte: usize) -> String {
-        let before = self.text.as_bytes().get(..byte).unwrap_or_default();
-        let line = 1 + before.iter().filter(|b| **b == b'\n').count();
+        let line = 1 + self.ends.partition_point(|end| *end < byte);
         format!("{}, line {line}", self.file)
     }
 

@@ -75,11 +75,28 @@ impl Division {
                 (chart_of[t as usize], nodes[t as usize]) = (number, *local);
             }
         }
+        Division::by(edges, features, charts.len(), chart_of, &nodes)
+    }
+
+    /// The division of a surface into its regions, which are the faces of a CAD file.
+    pub fn of_regions(mesh: &Triangles, edges: &Edges, features: &[Option<Feature>]) -> Division {
+        let regions = mesh.region.iter().max().map_or(0, |last| *last as usize + 1);
+        Division::by(edges, features, regions, mesh.region.clone(), &mesh.triangles)
+    }
+
+    /// The division into so many charts; `nodes` has the nodes of each triangle in its chart.
+    fn by(
+        edges: &Edges,
+        features: &[Option<Feature>],
+        charts: usize,
+        chart_of: Vec<u32>,
+        nodes: &[[u32; 3]],
+    ) -> Division {
         let ends = |side: u32| {
             let (t, k) = (nodes[side as usize / 3], side as usize % 3);
             [t[k], t[(k + 1) % 3]]
         };
-        let mut beside: Vec<Vec<u32>> = vec![Vec::new(); charts.len()];
+        let mut beside: Vec<Vec<u32>> = vec![Vec::new(); charts];
         let mut seams = Vec::new();
         for edge in 0..edges.len() {
             let sides = edges.get(edge).sides;
@@ -99,12 +116,12 @@ impl Division {
                 }
             }
         }
-        let mut colour: Vec<u32> = Vec::with_capacity(charts.len());
+        let mut colour: Vec<u32> = Vec::with_capacity(charts);
         for near in &beside {
             let taken: Vec<u32> = near.iter().filter_map(|&n| colour.get(n as usize).copied()).collect();
             colour.push((0..).find(|number| !taken.contains(number)).unwrap_or(0));
         }
-        Division { charts: charts.len(), chart_of, colour, seams }
+        Division { charts, chart_of, colour, seams }
     }
 }
 

@@ -13,8 +13,8 @@ use super::features::{ANGLE, features, with_lines};
 use super::further::groups_by_place;
 use super::planar_map::StretchBound;
 use crate::core::fault::Fault;
-use crate::core::geometry::complex::{Lifted, assemble};
-use crate::core::geometry::lifting::Piece;
+use crate::core::geometry::complex::assemble;
+use crate::core::geometry::lifting::{Lifted, Piece};
 use crate::core::geometry::{
     Domain, DomainCurve, DomainPoint, FaceSpec, FaceSurface, Facets, Image, NamedCurve, PointOn, SpaceCurve,
 };
@@ -126,11 +126,12 @@ pub fn surface(
             holes: loops[1..].iter().map(named).collect(),
             cracks: Vec::new(),
             repeated: Vec::new(),
+            groups: Vec::new(),
             place: String::new(),
         });
         lifts.push(Lifted { surface: FaceSurface::Facets(facets), loops, cracks: Vec::new(), repeated: Vec::new() });
     }
-    let mut domain = assemble(&curves, &vertices, &specs, lifts)?;
+    let mut domain = assemble(&curves, &vertices, &specs, lifts, None)?;
     domain.points = hard_points(mesh, &charts, &vertex_of, &domain);
     let region = |chart: &Chart| regions[mesh.region[chart.triangles[0] as usize] as usize].clone();
     let regions = charts.iter().map(region).collect();

@@ -4,7 +4,9 @@ use glam::DVec2;
 use rstar::RTree;
 use rstar::primitives::GeomWithData;
 use rustc_hash::FxHashMap;
+use smallvec::SmallVec;
 
+use super::atlas::Atlas;
 use super::course::Course;
 use super::curve::Curve;
 use super::domain_curve::{CurveId, CurveKind, DomainCurve};
@@ -153,6 +155,15 @@ pub fn join_ends(curves: &mut [DomainCurve], size: f64, tolerance: f64) -> Resul
             vertices.len() as u32 - 1
         });
     }
+    refine(curves, &vertices, size, tolerance)?;
+    Ok(vertices)
+}
+
+/// Makes the fine polylines of curves between their vertices.
+///
+/// # Errors
+/// Curves of zero length.
+pub fn refine(curves: &mut [DomainCurve], vertices: &[DVec2], size: f64, tolerance: f64) -> Result<(), Fault> {
     for c in curves.iter_mut() {
         c.fine = c.curve.polyline(1e-5 * size);
         let last = c.fine.len() - 1;
@@ -168,7 +179,38 @@ pub fn join_ends(curves: &mut [DomainCurve], size: f64, tolerance: f64) -> Resul
             return Err(placed(fault, &c.place));
         }
     }
-    Ok(vertices)
+    Ok(())
+}
+
+/// Merges ends of images into the vertices of the plane: ends in one chart that are one vertex in space and the same
+/// place there. `in_space` has the vertices in space of each curve.
+pub fn join_images(
+    curves: &mut [DomainCurve],
+    in_space: &dyn Fn(usize) -> [u32; 2],
+    atlas: &Atlas,
+    tolerance: Option<f64>,
+) -> Vec<DVec2> {
+    let mut ends: Vec<(bool, usize, usize, DVec2)> = Vec::new();
+    for (i, c) in curves.iter().enumerate() {
+        ends.extend([0, 1].map(|which| (!c.curve.ends_given(), i, which, c.curve.point(which as f64))));
+    }
+    ends.sort_by_key(|e| (e.0, e.1, e.2));
+    let mut vertices: Vec<DVec2> = Vec::new();
+    // The vertices of the plane by chart and vertex in space.
+    let mut known: FxHashMap<(usize, u32), SmallVec<[u32; 2]>> = FxHashMap::default();
+    for (_, i, which, p) in ends {
+        let chart = atlas.chart_of(p);
+        let images = known.entry((chart, in_space(i)[which])).or_default();
+        let (surface, offset) = (&atlas.charts()[chart], atlas.offset(chart));
+        let same = |v: &u32| surface.same_place(p - offset, vertices[*v as usize] - offset, tolerance);
+        let found = images.iter().copied().find(same);
+        curves[i].ends[which] = found.unwrap_or_else(|| {
+            vertices.push(p);
+            images.push(vertices.len() as u32 - 1);
+            vertices.len() as u32 - 1
+        });
+    }
+    vertices
 }
 
 /// Merges curve ends that are equal to the last bit into vertices, and makes the fine polylines between them: for

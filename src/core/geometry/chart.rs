@@ -18,6 +18,13 @@ use polar_map::PolarMap;
 
 mod polar_map;
 
+/// Places closer than this fraction of the surface's size coincide.
+const MEET: f64 = 1e-6;
+/// Places that are farther apart than this fraction of the surface's size do not meet within any tolerance.
+const NEAR: f64 = 0.01;
+/// Ends of two curves are at most so many tolerances apart: each may be off its vertex and off its surface.
+const APART: f64 = 4.0;
+
 /// A surface and its map to a plane.
 #[derive(Clone, Debug)]
 pub struct Chart {
@@ -27,7 +34,7 @@ pub struct Chart {
 
 #[derive(Clone, Debug)]
 enum Map {
-    /// The parametric plane, with its origin at a corner and u and v scaled.
+    /// The parametric plane, with its origin at a corner and u and v scaled; u by a negative factor if it is mirrored.
     Sheet { from: DVec2, scale: DVec2 },
     /// Polar coordinates about a singular edge.
     Polar(Box<PolarMap>),
@@ -52,7 +59,7 @@ impl ChartPoint {
         Metric2 { uu: a.dot(a), uv: a.dot(b), vv: b.dot(b) }
     }
 
-    /// The unit normal, on the side of `r_u x r_v`.
+    /// The unit normal, on the side of `r_u x r_v` of the surface unless the chart is reversed.
     #[inline]
     pub fn normal(&self) -> DVec3 {
         self.j[0].cross(self.j[1]).normalize_or_zero()
@@ -69,8 +76,9 @@ impl ChartPoint {
 }
 
 impl Chart {
-    /// The parametric plane of a surface, scaled by the mean lengths of its derivatives.
-    pub fn sheet(surface: Arc<NurbsSurface>) -> Chart {
+    /// The parametric plane of a surface, scaled by the mean lengths of its derivatives; its mirror image if
+    /// `reversed`, so that the normal is on the other side.
+    pub fn sheet(surface: Arc<NurbsSurface>, reversed: bool) -> Chart {
         let [[u0, u1], [v0, v1]] = surface.domain();
         const N: usize = 12;
         let mut sums = [0.0; 2];
@@ -83,13 +91,16 @@ impl Chart {
             }
         }
         let count = (N * N) as f64;
-        let scale = DVec2::new(sums[0] / count, sums[1] / count).max(DVec2::splat(f64::MIN_POSITIVE));
+        let mut scale = DVec2::new(sums[0] / count, sums[1] / count).max(DVec2::splat(f64::MIN_POSITIVE));
+        if reversed {
+            scale.x = -scale.x;
+        }
         Chart { surface, map: Map::Sheet { from: DVec2::new(u0, v0), scale } }
     }
 
-    /// The secondary mapping about a singular edge of the surface.
-    pub fn about(surface: Arc<NurbsSurface>, edge: Edge) -> Chart {
-        let polar = PolarMap::new(&surface, edge);
+    /// The secondary mapping about a singular edge of the surface; its mirror image if `reversed`.
+    pub fn about(surface: Arc<NurbsSurface>, edge: Edge, reversed: bool) -> Chart {
+        let polar = PolarMap::new(&surface, edge, reversed);
         Chart { surface, map: Map::Polar(Box::new(polar)) }
     }
 
@@ -114,6 +125,22 @@ impl Chart {
     /// Whether the map from u and v is affine, so that it preserves straight lines.
     pub fn keeps_lines(&self) -> bool {
         matches!(self.map, Map::Sheet { .. })
+    }
+
+    /// Whether two places coincide: in the chart, or, close to one another there, within a given tolerance in space.
+    pub fn same_place(&self, p: DVec2, q: DVec2, tolerance: Option<f64>) -> bool {
+        let (size, apart) = (self.surface.size(), p.distance(q));
+        let in_space = || {
+            let [a, b] = self.at(p).j;
+            (a * (q.x - p.x) + b * (q.y - p.y)).length()
+        };
+        apart <= MEET * size || tolerance.is_some_and(|most| apart <= NEAR * size && in_space() <= APART * most)
+    }
+
+    /// Whether it shows a plane as it is, but for stretches: straight lines of space are straight in it, with the same
+    /// ratios of lengths.
+    pub fn is_affine(&self) -> bool {
+        self.keeps_lines() && self.surface.is_parallelogram()
     }
 
     /// The coordinates in the chart of the parameters u and v.
@@ -249,11 +276,11 @@ mod tests {
         let funnel = Arc::new(cone(&frame(), [1.5, 0.0], 2.0, whole).unwrap());
         let ring = Arc::new(torus(&frame(), 3.0, 1.0, whole, whole).unwrap());
         vec![
-            (Chart::about(Arc::clone(&ball), EDGES[0]), 2.0),
-            (Chart::about(Arc::clone(&ball), EDGES[2]), 2.0),
-            (Chart::about(cap, EDGES[2]), 2.0),
-            (Chart::about(funnel, EDGES[2]), 1.5),
-            (Chart::sheet(ring), 2.0),
+            (Chart::about(Arc::clone(&ball), EDGES[0], false), 2.0),
+            (Chart::about(Arc::clone(&ball), EDGES[2], false), 2.0),
+            (Chart::about(cap, EDGES[2], false), 2.0),
+            (Chart::about(funnel, EDGES[2], false), 1.5),
+            (Chart::sheet(ring, false), 2.0),
         ]
     }
 
@@ -321,7 +348,7 @@ mod tests {
         let line = vec![0.0, 0.0, 1.0, 1.0];
         let patch = NurbsSurface::new([1, 1], [line.clone(), line], &[], &points, 2).unwrap();
         assert_eq!(singular_edges(&patch), [EDGES[3]]);
-        let chart = Chart::about(Arc::new(patch), EDGES[3]);
+        let chart = Chart::about(Arc::new(patch), EDGES[3], false);
         for p in [DVec2::new(0.5, 0.1), DVec2::new(1e-13, 0.0), DVec2::new(0.4, -0.2)] {
             let g = chart.at(p).first_form();
             assert!(g.det() > 0.3 && g.uu < 3.0 && g.vv < 3.0, "{g:?}");

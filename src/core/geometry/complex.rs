@@ -11,22 +11,22 @@ use std::sync::Arc;
 use glam::{DVec2, DVec3};
 use rustc_hash::FxHashMap;
 
-use super::assembly::{join_ends, join_equal_ends, loop_name, no_face, placed, second, unknown_curve};
+use super::assembly::{join_equal_ends, join_images, loop_name, no_face, placed, refine, second, unknown_curve};
 use super::atlas::Atlas;
-use super::chart::{Chart, singular_edges};
+use super::chart::Chart;
 use super::course::Course;
 use super::domain::{Borders, Domain, Extent, Spatial};
 use super::domain_curve::{CurveId, CurveKind, DirectedCurve, DomainCurve};
 use super::face_surface::FaceSurface;
-use super::lifting::{Lift, Piece};
+use super::lifting::{Lift, Lifted, Piece, charts_for};
 use super::named_curve::NamedCurve;
+use super::oriented::{self, Bounded};
 use super::space_curve::SpaceCurve;
 use super::spec::{ComplexSpec, FaceSpec, SurfaceFaceSpec};
-use super::surface::{Edge, NurbsSurface};
+use super::surface::NurbsSurface;
 use super::whole_surface::{FacePart, whole};
 use crate::core::fault::Fault;
 use crate::core::kernel::box_tree::extent;
-use crate::core::kernel::decimal::point_text;
 
 /// Ends of curves in space closer than this fraction of the total size are one vertex.
 const SAME_VERTEX: f64 = 1e-9;
@@ -69,20 +69,42 @@ pub fn build(spec: &ComplexSpec) -> Result<Domain, Fault> {
             let what = format!("The face \"{}\" lies on \"{}\", which does not exist", face.face.name, face.surface);
             placed(Fault::new(what).remedy("Add it as [[surface]]"), &face.face.place)
         })?;
-        if face.face.outer.is_empty() {
-            whole(&face.face, &surface, &mut curves, &mut parts);
+        let part = |spec, lifted| FacePart {
+            spec,
+            surface: Arc::clone(&surface),
+            reversed: face.reversed,
+            lifted,
+            about: None,
+            whole: false,
+            half: None,
+        };
+        if !face.loops.is_empty() {
+            match oriented::lift(face, &surface, &mut curves, spec.tolerance)? {
+                Bounded::Face(lifted) => {
+                    let repeated = lifted.repeated.iter().map(|piece| curves[piece.curve].name.clone()).collect();
+                    parts.push(part(FaceSpec { repeated, ..face.face.clone() }, Some(lifted)));
+                }
+                Bounded::AllBut(holes) => {
+                    whole(&FaceSpec { holes, ..face.face.clone() }, &surface, face.reversed, &mut curves, &mut parts);
+                }
+            }
+        } else if face.face.outer.is_empty() {
+            whole(&face.face, &surface, face.reversed, &mut curves, &mut parts);
         } else {
-            parts.push(FacePart { spec: face.face.clone(), surface, about: None, whole: false, half: None });
+            parts.push(part(face.face.clone(), None));
         }
     }
-    let vertices = join_in_space(&mut curves);
+    let vertices = join_in_space(&mut curves, spec.tolerance);
     let mut lifts = Vec::new();
     for part in &mut parts {
         keep_own(part, &curves)?;
-        lifts.push(lift(part, &curves)?);
+        lifts.push(match part.lifted.take() {
+            Some(lifted) => lifted,
+            None => lift(part, &curves, spec.tolerance)?,
+        });
     }
     let specs: Vec<FaceSpec> = parts.into_iter().map(|part| part.spec).collect();
-    assemble(&curves, &vertices, &specs, lifts)
+    assemble(&curves, &vertices, &specs, lifts, spec.tolerance)
 }
 
 fn surfaces(spec: &ComplexSpec) -> Result<Vec<(String, Arc<NurbsSurface>)>, Fault> {
@@ -106,9 +128,9 @@ fn surfaces(spec: &ComplexSpec) -> Result<Vec<(String, Arc<NurbsSurface>)>, Faul
 }
 
 /// Merges ends of curves in space into vertices; ends given by coordinates come first, and their coordinates are kept.
-fn join_in_space(curves: &mut [NamedCurve]) -> Vec<DVec3> {
+fn join_in_space(curves: &mut [NamedCurve], tolerance: Option<f64>) -> Vec<DVec3> {
     let (low, high) = extent(curves.iter().flat_map(|c| c.curve.polyline()));
-    let tolerance = SAME_VERTEX * (high - low).max_element();
+    let tolerance = tolerance.unwrap_or(0.0).max(SAME_VERTEX * (high - low).max_element());
     let mut ends: Vec<(bool, usize, usize, DVec3)> = Vec::new();
     for (i, c) in curves.iter().enumerate() {
         ends.extend([0, 1].map(|which| (!c.curve.ends_given(), i, which, c.curve.point(which as f64))));
@@ -141,17 +163,8 @@ fn join_in_space(curves: &mut [NamedCurve]) -> Vec<DVec3> {
     vertices
 }
 
-/// A face in its chart: the images of its curves, chained into loops.
-pub(in crate::core) struct Lifted {
-    pub surface: FaceSurface,
-    /// Outer loop, holes.
-    pub loops: Vec<Vec<Piece>>,
-    pub cracks: Vec<Piece>,
-    pub repeated: Vec<Piece>,
-}
-
 /// Finds the chart of a face and the images of its curves there.
-fn lift(part: &FacePart, curves: &[NamedCurve]) -> Result<Lifted, Fault> {
+fn lift(part: &FacePart, curves: &[NamedCurve], tolerance: Option<f64>) -> Result<Lifted, Fault> {
     let spec = &part.spec;
     let find = |name: &String| {
         let known = || curves.iter().map(|c| c.name.as_str());
@@ -160,14 +173,14 @@ fn lift(part: &FacePart, curves: &[NamedCurve]) -> Result<Lifted, Fault> {
     let numbers = |names: &[String]| names.iter().map(find).collect::<Result<Vec<_>, _>>();
     let outer = numbers(&spec.outer)?;
     let charts = match part.about {
-        Some(edge) => vec![Chart::about(Arc::clone(&part.surface), edge)],
-        None if part.whole => vec![Chart::sheet(Arc::clone(&part.surface))],
-        None => charts_for(&part.surface, &outer, curves),
+        Some(edge) => vec![Chart::about(Arc::clone(&part.surface), edge, part.reversed)],
+        None if part.whole => vec![Chart::sheet(Arc::clone(&part.surface), part.reversed)],
+        None => charts_for(&part.surface, &outer, part.reversed, curves),
     };
     let mut refusal: Option<Fault> = None;
     for chart in charts {
         let chart = Arc::new(chart);
-        let mut lift = Lift::new(&chart, curves, &spec.name);
+        let mut lift = Lift::new(&chart, curves, &spec.name, tolerance);
         let found = lift.chain(&outer, &loop_name(&spec.name, 0));
         let outer = match found {
             Ok(outer) => outer,
@@ -198,28 +211,10 @@ fn lift(part: &FacePart, curves: &[NamedCurve]) -> Result<Lifted, Fault> {
     Err(placed(refusal.unwrap_or_else(|| Fault::new(format!("The face \"{}\" has no chart", spec.name))), &spec.place))
 }
 
-/// Candidate charts of a face with these outer curves: one about each singular point, the nearest to the curves first,
-/// and then the parametric plane.
-fn charts_for(surface: &Arc<NurbsSurface>, outer: &[usize], curves: &[NamedCurve]) -> Vec<Chart> {
-    let points: Vec<DVec3> = outer.iter().flat_map(|&c| curves[c].curve.polyline()).collect();
-    let domain = surface.domain();
-    let mut edges: Vec<(f64, Edge)> = singular_edges(surface)
-        .into_iter()
-        .map(|edge| {
-            let apex = surface.at(edge.uv(domain[1 - edge.axis][0], domain[edge.axis][usize::from(edge.last)]), 1).p;
-            (points.iter().map(|p| p.distance(apex)).fold(f64::INFINITY, f64::min), edge)
-        })
-        .collect();
-    edges.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let mut charts: Vec<Chart> = edges.into_iter().map(|(_, edge)| Chart::about(Arc::clone(surface), edge)).collect();
-    charts.push(Chart::sheet(Arc::clone(surface)));
-    charts
-}
-
 /// Assigns holes and lines of a whole surface that is divided between its poles to the half in which they lie.
 fn keep_own(part: &mut FacePart, curves: &[NamedCurve]) -> Result<(), Fault> {
     let Some((axis, [first, last])) = part.half else { return Ok(()) };
-    let chart = Chart::sheet(Arc::clone(&part.surface));
+    let chart = Chart::sheet(Arc::clone(&part.surface), part.reversed);
     let margin = 1e-9 * (last - first);
     let mut crossing: Option<String> = None;
     let mut is_own = |names: &[String]| {
@@ -256,6 +251,7 @@ pub(in crate::core) fn assemble(
     vertices: &[DVec3],
     specs: &[FaceSpec],
     lifts: Vec<Lifted>,
+    tolerance: Option<f64>,
 ) -> Result<Domain, Fault> {
     let bounds: Vec<[DVec2; 2]> = lifts
         .iter()
@@ -315,24 +311,21 @@ pub(in crate::core) fn assemble(
         }
         loops[i].push(step);
     }
-    let extent = Extent::of(&domain_curves)?;
+    let extent = Extent::of(&domain_curves)?.within(tolerance)?;
     let is_embedded = atlas.charts().iter().all(|chart| matches!(chart, FaceSurface::Facets(_)));
     let (plane, borders) = if is_embedded {
         (join_equal_ends(&mut domain_curves), Borders::Embedded)
     } else {
-        (join_ends(&mut domain_curves, extent.size, extent.tolerance)?, Borders::Unchecked)
+        let in_space = |k: usize| curves[numbers[k]].ends;
+        let widest = bounds.iter().map(|[low, high]| (*high - *low).max_element()).fold(0.0, f64::max);
+        let joined = join_images(&mut domain_curves, &in_space, &atlas, tolerance);
+        refine(&mut domain_curves, &joined, widest, extent.tolerance)?;
+        (joined, Borders::Unchecked)
     };
     let mut vertex_of = vec![u32::MAX; plane.len()];
     for (curve, &number) in domain_curves.iter().zip(&numbers) {
         for (own, in_space) in curve.ends.iter().zip(curves[number].ends) {
-            let known = &mut vertex_of[*own as usize];
-            if *known != u32::MAX && *known != in_space {
-                let [a, b] = [*known, in_space].map(|v| point_text(vertices[v as usize]));
-                let fault = Fault::new(format!("The curve ends at {a} and {b} coincide in the chart of a face"))
-                    .remedy("Make them meet in space, or move them apart");
-                return Err(placed(fault, &curve.place));
-            }
-            *known = in_space;
+            vertex_of[*own as usize] = in_space;
         }
     }
     let mut domain = Domain::assemble(domain_curves, plane, chains, specs, extent, borders)?;

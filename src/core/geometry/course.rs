@@ -111,9 +111,13 @@ impl Course {
         self.breaks.clone()
     }
 
-    /// Lower and upper corner of its bounding box, accurate to a millionth of its size.
+    /// Lower and upper corner of its bounding box, accurate to a millionth of its size; of an image about to a
+    /// thousandth, since every point of it is projected.
     pub fn bounds(&self) -> (DVec2, DVec2) {
         let (low, high) = self.hull();
+        if let Path::Image(_) = &self.path {
+            return (low, high);
+        }
         extent(self.polyline(1e-6 * (high - low).max_element()).into_iter().map(|(_, p)| p))
     }
 

@@ -12,6 +12,9 @@ use crate::core::fault::Fault;
 use crate::core::kernel::decimal::{number, point_text};
 use crate::core::kernel::predicates::orient;
 
+/// Curves that share a vertex may cross within so many tolerances of it.
+const AT_VERTEX: f64 = 4.0;
+
 /// The tolerances of the test. Two curves may be closer than `tolerance` only within `near` of a vertex that they share
 /// (they may be tangent there).
 #[derive(Clone, Copy, Debug)]
@@ -167,13 +170,18 @@ fn meet(a: Arc, b: Arc, shared: &[DVec2], limits: Limits) -> Option<Meeting> {
             }
             continue;
         }
+        let within = |p: DVec2, reach: f64| shared.iter().any(|v| v.distance(p) <= reach);
         if let Some(p) = crossing(&a, &b) {
+            // Curves that end beside their vertex may cross there.
+            if within(p, AT_VERTEX * limits.tolerance) {
+                continue;
+            }
             return Some(Meeting::Crosses(p));
         }
         if distance > limits.tolerance {
             continue;
         }
-        let near = |p: DVec2| shared.iter().any(|v| v.distance(p) <= limits.near);
+        let near = |p: DVec2| within(p, limits.near);
         let straight = a.curve.curve.straight() && b.curve.curve.straight();
         let ends = |x: &Arc| [(x.from.1, x.to.1), (x.to.1, x.from.1)];
         let corner = ends(&a).into_iter().flat_map(|m| ends(&b).map(|n| (m, n))).find(|(m, n)| m.0 == n.0);

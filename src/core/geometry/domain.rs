@@ -30,6 +30,8 @@ use crate::core::kernel::decimal::{number, point_text};
 pub struct DomainFace {
     /// Its name.
     pub name: String,
+    /// Groups of faces in which it is, besides its own name.
+    pub groups: Vec<String>,
     /// The outer loop, anticlockwise, then the holes, clockwise: the face lies on the left of each.
     pub loops: Vec<Vec<DirectedCurve>>,
     /// Its topological loops (docs/algorithm.md, "Even loops"): boundary walks with the face on their left, with the
@@ -208,11 +210,13 @@ impl Domain {
             upper,
             chords,
         };
-        domain.faces = names
-            .iter()
-            .zip(chains)
-            .map(|(name, loops)| DomainFace { name: name.clone(), loops, walks: Vec::new() })
-            .collect();
+        let face = |(spec, loops): (&FaceSpec, _)| DomainFace {
+            name: spec.name.clone(),
+            groups: spec.groups.clone(),
+            loops,
+            walks: Vec::new(),
+        };
+        domain.faces = faces.iter().zip(chains).map(face).collect();
         if borders == Borders::Unchecked {
             domain.check_nesting(faces)?;
         }
@@ -459,7 +463,7 @@ impl Extent {
     ///
     /// # Errors
     /// A tolerance of more than a tenth of the size.
-    fn within(self, tolerance: Option<f64>) -> Result<Extent, Fault> {
+    pub fn within(self, tolerance: Option<f64>) -> Result<Extent, Fault> {
         let Some(tolerance) = tolerance else { return Ok(self) };
         if tolerance > 0.1 * self.size {
             return Err(Fault::new(format!(

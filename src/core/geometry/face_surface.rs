@@ -27,6 +27,14 @@ impl FaceSurface {
         }
     }
 
+    /// Whether two places of its plane are the same: within what rounding needs, or within a tolerance in space.
+    pub(super) fn same_place(&self, p: DVec2, q: DVec2, tolerance: Option<f64>) -> bool {
+        match self {
+            FaceSurface::Chart(chart) => chart.same_place(p, q, tolerance),
+            FaceSurface::Facets(_) => p == q,
+        }
+    }
+
     /// The point with second derivatives by the surface's own parameters; close to a singular point, that of a point
     /// beside it. The second derivatives of triangles are zero.
     pub fn bent(&self, p: DVec2) -> SurfacePoint {

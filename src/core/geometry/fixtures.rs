@@ -40,6 +40,7 @@ pub fn face(name: &str, outer: &str, holes: &[&str], cracks: &str, repeated: &st
         holes: holes.iter().map(|h| words(h)).collect(),
         cracks: words(cracks),
         repeated: words(repeated),
+        groups: Vec::new(),
         place: String::new(),
     }
 }

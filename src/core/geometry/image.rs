@@ -67,8 +67,8 @@ impl Image {
     /// The image of any curve that lies on the chart's surface; the search for its start begins at `guess`.
     ///
     /// # Errors
-    /// The largest distance of the curve from the surface, if that is too large.
-    pub fn projected(chart: &Arc<Chart>, curve: &Arc<SpaceCurve>, guess: DVec2) -> Result<Image, Deviation> {
+    /// The largest distance of the curve from the surface, if that is more than `most`.
+    pub fn projected(chart: &Arc<Chart>, curve: &Arc<SpaceCurve>, guess: DVec2, most: f64) -> Result<Image, Deviation> {
         let mut table: Vec<(f64, DVec2)> = Vec::new();
         let mut worst = Deviation { distance: 0.0, at: DVec3::ZERO };
         for t in parameters(curve) {
@@ -78,7 +78,7 @@ impl Image {
                 Some(&(before, p)) => p + chart.at(p).pulled_back(curve.at(before).1) * (t - before),
             };
             let (mut p, mut off) = chart.project(xyz, from);
-            if off > ON_SURFACE * chart.surface().size() {
+            if off > most {
                 // The extrapolated start may not converge: try again from the previous point.
                 let again = chart.project(xyz, table.last().map_or(guess, |last| last.1));
                 if again.1 < off {
@@ -90,11 +90,12 @@ impl Image {
             }
             table.push((t, p));
         }
-        if worst.distance > ON_SURFACE * chart.surface().size() {
+        if worst.distance > most {
             return Err(worst);
         }
         let placing = Placing::Projected(Arc::clone(chart));
-        Ok(Image::new(FaceSurface::Chart(Arc::clone(chart)), curve, placing, table))
+        let straight = chart.is_affine() && curve.straight();
+        Ok(Image { straight, ..Image::new(FaceSurface::Chart(Arc::clone(chart)), curve, placing, table) })
     }
 
     /// The image of a chain of triangle edges through `points` of the chart.
@@ -125,7 +126,7 @@ impl Image {
                 let (a, b) = (self.table[k - 1], self.table[k]);
                 let guess = lerp(a.1, b.1, (t - a.0) / (b.0 - a.0));
                 match placing {
-                    Placing::Projected(chart) => chart.project(self.curve.point(t), guess).0,
+                    Placing::Projected(chart) if !self.straight => chart.project(self.curve.point(t), guess).0,
                     _ => guess,
                 }
             }

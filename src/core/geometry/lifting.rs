@@ -4,17 +4,16 @@
 
 use std::sync::Arc;
 
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 use rustc_hash::FxHashMap;
 
-use super::chart::Chart;
+use super::chart::{Chart, singular_edges};
+use super::face_surface::FaceSurface;
 use super::image::Image;
 use super::named_curve::{NamedCurve, image_on};
+use super::surface::{Edge, NurbsSurface};
 use crate::core::fault::Fault;
 use crate::core::kernel::decimal::{number, point_text};
-
-/// Ends of images closer than this fraction of the surface's size coincide.
-const MEET: f64 = 1e-6;
 
 /// The number of chains of images that are tried for a loop.
 const PATIENCE: usize = 20_000;
@@ -30,8 +29,43 @@ pub struct Piece {
     pub forward: bool,
 }
 
+/// A face in its chart: the images of its curves, chained into loops.
+pub(in crate::core) struct Lifted {
+    pub surface: FaceSurface,
+    /// Outer loop, holes.
+    pub loops: Vec<Vec<Piece>>,
+    pub cracks: Vec<Piece>,
+    pub repeated: Vec<Piece>,
+}
+
+/// Candidate charts of a face with these outer curves: one about each singular point, the nearest to the curves first,
+/// and then the parametric plane.
+pub(super) fn charts_for(
+    surface: &Arc<NurbsSurface>,
+    outer: &[usize],
+    reversed: bool,
+    curves: &[NamedCurve],
+) -> Vec<Chart> {
+    let points: Vec<DVec3> = outer.iter().flat_map(|&c| curves[c].curve.polyline()).collect();
+    let domain = surface.domain();
+    let mut edges: Vec<(f64, Edge)> = singular_edges(surface)
+        .into_iter()
+        .map(|edge| {
+            let apex = surface.at(edge.uv(domain[1 - edge.axis][0], domain[edge.axis][usize::from(edge.last)]), 1).p;
+            (points.iter().map(|p| p.distance(apex)).fold(f64::INFINITY, f64::min), edge)
+        })
+        .collect();
+    edges.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let about = |(_, edge): (f64, Edge)| Chart::about(Arc::clone(surface), edge, reversed);
+    let mut charts: Vec<Chart> = edges.into_iter().map(about).collect();
+    charts.push(Chart::sheet(Arc::clone(surface), reversed));
+    charts
+}
+
 /// Images of curves in one chart.
 pub(super) struct Lift<'a> {
+    /// The distance in space up to which ends of curves are one and curves lie on their surface, if it is given.
+    tolerance: Option<f64>,
     chart: &'a Arc<Chart>,
     curves: &'a [NamedCurve],
     face: &'a str,
@@ -58,7 +92,7 @@ fn uv_text(uv: DVec2) -> String {
 }
 
 impl<'a> Lift<'a> {
-    pub fn new(chart: &'a Arc<Chart>, curves: &'a [NamedCurve], face: &'a str) -> Lift<'a> {
+    pub fn new(chart: &'a Arc<Chart>, curves: &'a [NamedCurve], face: &'a str, tolerance: Option<f64>) -> Lift<'a> {
         let surface = chart.surface();
         let period = [0, 1].map(|axis| surface.period(axis));
         let mut moves = vec![DVec2::ZERO];
@@ -73,7 +107,7 @@ impl<'a> Lift<'a> {
                 }
             }
         }
-        Lift { chart, curves, face, images: FxHashMap::default(), moves }
+        Lift { tolerance, chart, curves, face, images: FxHashMap::default(), moves }
     }
 
     /// The image of a curve on a sheet.
@@ -87,7 +121,7 @@ impl<'a> Lift<'a> {
             let shift = self.chart.of_uv(by) - self.chart.of_uv(DVec2::ZERO);
             self.image(curve, 0).map(|image| image.moved(shift))
         } else {
-            image_on(self.chart, &self.curves[curve], by, self.face)
+            image_on(self.chart, &self.curves[curve], by, self.face, self.tolerance)
         };
         let made = made.and_then(|image| self.within(curve, image));
         self.images.insert((curve, sheet), made.clone());
@@ -100,12 +134,22 @@ impl<'a> Lift<'a> {
         let domain = surface.domain();
         // A sector ends at its seam; the parametric plane and a disc continue across it.
         let goes_round = self.chart.keeps_lines() || self.chart.is_disc();
+        let margin = [0, 1].map(|axis: usize| 1e-6 * (domain[axis][1] - domain[axis][0]));
+        let singular = singular_edges(surface);
+        // At a singular point the parameter along its edge means nothing.
+        let is_singular = |along: usize, across: f64| {
+            let at = |edge: &Edge| {
+                let value = domain[edge.axis][usize::from(edge.last)];
+                edge.axis != along && (across - value).abs() <= margin[edge.axis]
+            };
+            singular.iter().any(at)
+        };
         let outside = image.uvs().find(|uv| {
             (0..2).any(|axis| {
                 let [first, last] = domain[axis];
-                let margin = 1e-6 * (last - first);
-                let t = [uv.x, uv.y][axis];
-                !(goes_round && surface.closed()[axis] || t >= first - margin && t <= last + margin)
+                let (t, across) = ([uv.x, uv.y][axis], [uv.y, uv.x][axis]);
+                let is_inside = t >= first - margin[axis] && t <= last + margin[axis];
+                !(is_inside || goes_round && surface.closed()[axis] || is_singular(axis, across))
             })
         });
         match outside {
@@ -180,11 +224,91 @@ impl<'a> Lift<'a> {
         }))
     }
 
+    /// The images of directed curves that follow one another, and by how much the end of the last is past the start of
+    /// the first, in u and v: by nothing, or by whole periods.
+    ///
+    /// # Errors
+    /// Curves that do not lie on the surface, and loops that do not close.
+    pub fn follow(&mut self, steps: &[(usize, bool)]) -> Result<(Vec<Piece>, DVec2), Fault> {
+        let mut refusal: Option<Fault> = None;
+        for first in 0..self.moves.len() {
+            match self.follow_from(steps, first) {
+                Ok(found) => return Ok(found),
+                Err(fault) => refusal = refusal.or(Some(fault)),
+            }
+            // The other sheets of the parametric plane give the same result.
+            if self.chart.keeps_lines() {
+                break;
+            }
+        }
+        Err(refusal.unwrap_or_else(Fault::stopped))
+    }
+
+    /// The same with the first curve on a sheet.
+    fn follow_from(&mut self, steps: &[(usize, bool)], first: usize) -> Result<(Vec<Piece>, DVec2), Fault> {
+        let end = |image: &Image, forward: bool| image.point(if forward { 1.0 } else { 0.0 });
+        let mut pieces: Vec<Piece> = Vec::new();
+        let mut used: Vec<(usize, usize)> = Vec::new();
+        let (mut start, mut at) = (DVec2::ZERO, DVec2::ZERO);
+        for &(curve, forward) in steps {
+            let mut refusal: Option<Fault> = None;
+            let mut found: Option<(usize, Image)> = None;
+            for sheet in if pieces.is_empty() { first..first + 1 } else { 0..self.moves.len() } {
+                // A curve is not traversed twice on the same sheet.
+                if used.contains(&(curve, sheet)) {
+                    continue;
+                }
+                match self.image(curve, sheet) {
+                    Ok(image) if pieces.is_empty() || self.meet(end(&image, !forward), at) => {
+                        found = Some((sheet, image));
+                        break;
+                    }
+                    Ok(_) => {}
+                    Err(fault) => refusal = refusal.or(Some(fault)),
+                }
+            }
+            let Some((sheet, image)) = found else {
+                return Err(refusal.unwrap_or_else(|| self.broken(curve, at)));
+            };
+            if pieces.is_empty() {
+                start = end(&image, !forward);
+            }
+            at = end(&image, forward);
+            used.push((curve, sheet));
+            pieces.push(Piece { curve, image, forward });
+        }
+        if pieces.is_empty() || self.meet(at, start) {
+            return Ok((pieces, DVec2::ZERO));
+        }
+        let uv = self.chart.uv(start);
+        match self.moves.iter().find(|by| self.meet(at, self.chart.of_uv(uv + **by))) {
+            Some(past) => Ok((pieces, *past)),
+            None => Err(self.broken(steps[0].0, at)),
+        }
+    }
+
+    /// The fault of a loop that breaks off before a curve.
+    fn broken(&self, curve: usize, at: DVec2) -> Fault {
+        let (uv, on) = (self.chart.uv(at), self.chart.at(at).xyz);
+        let name = &self.curves[curve].name;
+        let what = format!(
+            "A loop of the face \"{}\" does not close on its surface: it breaks off before \"{name}\"",
+            self.face
+        );
+        Fault::new(what)
+            .at(format!("at {} ({})", point_text(on), uv_text(uv)))
+            .remedy("Make the ends meet, or give a larger tolerance (a key of the case)")
+    }
+
+    /// Whether two ends of images coincide.
+    fn meet(&self, p: DVec2, q: DVec2) -> bool {
+        self.chart.same_place(p, q, self.tolerance)
+    }
+
     /// Extends the chain from `at` by backtracking until it contains all curves and returns to `start`.
     fn extend(&mut self, chain: &mut Chain<'_>, start: DVec2, at: DVec2) -> bool {
-        let tolerance = MEET * self.chart.surface().size();
         if chain.steps.len() == chain.list.len() {
-            return at.distance(start) <= tolerance;
+            return self.meet(at, start);
         }
         if chain.steps.len() > chain.longest.0 {
             chain.longest = (chain.steps.len(), at);
@@ -208,7 +332,7 @@ impl<'a> Lift<'a> {
                     let Ok(image) = self.image(curve, sheet) else { continue };
                     let (from, to) = (image.point(0.0), image.point(1.0));
                     let (from, to) = if forward { (from, to) } else { (to, from) };
-                    if from.distance(at) > tolerance {
+                    if !self.meet(from, at) {
                         continue;
                     }
                     chain.used[i] = true;

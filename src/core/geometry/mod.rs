@@ -6,6 +6,7 @@ mod mirror;
 mod spec;
 mod nurbs;
 mod nurbs_part;
+mod nurbs_cut;
 pub mod curve;
 mod surface;
 mod primitive;
@@ -30,6 +31,7 @@ mod chord_limits;
 mod named_curve;
 pub mod lifting;
 mod whole_surface;
+mod oriented;
 pub mod complex;
 
 pub use atlas::Atlas;
@@ -45,6 +47,9 @@ pub use image::{Deviation, Image};
 pub use mirror::{Axis, Joint, Mirror};
 pub(in crate::core) use named_curve::NamedCurve;
 pub use nurbs::{Basis, NurbsCurve, Vector};
+pub use nurbs_cut::cut;
+pub(in crate::core) use oriented::unseamed;
+pub use primitive::revolution;
 pub use space_curve::SpaceCurve;
 pub use spec::{
     ComplexSpec, CurveShape, CurveSpec, FaceSpec, PointSpec, SpaceCurveSpec, SpaceShape, SurfaceFaceSpec, SurfaceShape,

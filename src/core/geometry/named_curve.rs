@@ -22,7 +22,15 @@ pub(in crate::core) struct NamedCurve {
 }
 
 /// The image of a curve in a chart, on the sheet that `move_by` selects; see [`Lift`](super::lifting::Lift).
-pub(super) fn image_on(chart: &Arc<Chart>, named: &NamedCurve, move_by: DVec2, face: &str) -> Result<Image, Fault> {
+/// A curve may be off the surface by `tolerance`, if it is given.
+pub(super) fn image_on(
+    chart: &Arc<Chart>,
+    named: &NamedCurve,
+    move_by: DVec2,
+    face: &str,
+    tolerance: Option<f64>,
+) -> Result<Image, Fault> {
+    let most = tolerance.unwrap_or(0.0).max(ON_SURFACE * chart.surface().size());
     if let Some((surface, trim)) = named.curve.trim()
         && Arc::ptr_eq(surface, chart.surface())
     {
@@ -36,9 +44,9 @@ pub(super) fn image_on(chart: &Arc<Chart>, named: &NamedCurve, move_by: DVec2, f
             .remedy("Correct the curve, or name another one");
         placed(fault, &named.place)
     };
-    if off > ON_SURFACE * chart.surface().size() {
+    if off > most {
         return Err(refuse(off, named.curve.point(0.0)));
     }
     let guess = if move_by == DVec2::ZERO { start } else { chart.of_uv(chart.uv(start) + move_by) };
-    Image::projected(chart, &named.curve, guess).map_err(|off| refuse(off.distance, off.at))
+    Image::projected(chart, &named.curve, guess, most).map_err(|off| refuse(off.distance, off.at))
 }

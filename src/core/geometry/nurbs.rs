@@ -4,7 +4,7 @@
 use std::fmt::Debug;
 use std::ops::{Add, AddAssign, Div, Mul, Sub};
 
-use glam::{DVec2, DVec3};
+use glam::{DVec2, DVec3, DVec4};
 use smallvec::SmallVec;
 
 use crate::core::fault::Fault;
@@ -200,6 +200,8 @@ pub trait Vector:
 
 impl Vector for DVec2 {}
 impl Vector for DVec3 {}
+/// Homogeneous points of space.
+impl Vector for DVec4 {}
 
 /// Control points times their weights, and the weights. Only ratios of weights matter, so the largest is scaled to 1
 /// and no product overflows.

@@ -117,6 +117,8 @@ pub struct FaceSpec {
     pub cracks: Vec<String>,
     /// Repeated lines: internal lines that are edges of the mesh, with the same nodes on both sides.
     pub repeated: Vec<String>,
+    /// Groups of faces in which it is, besides its own name.
+    pub groups: Vec<String>,
     /// Its place in the case, for messages.
     pub place: String,
 }
@@ -259,13 +261,19 @@ pub struct SurfaceSpec {
 /// A curve of a case with surfaces.
 pub type SpaceCurveSpec = CurveSpec<SpaceShape>;
 
-/// A face of a case with surfaces; without an outer loop it is its whole surface, except the holes.
+/// A face of a case with surfaces; without an outer loop and without directed loops it is its whole surface, except the
+/// holes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SurfaceFaceSpec {
     /// Its surface.
     pub surface: String,
     /// Its name and its curves.
     pub face: FaceSpec,
+    /// Directed loops, instead of an outer loop and holes: the face is on the left of each, seen from where its normal
+    /// points. Each curve with whether its loop runs along it.
+    pub loops: Vec<Vec<(String, bool)>>,
+    /// Whether its normal is against that of its surface, `r_u x r_v`.
+    pub reversed: bool,
 }
 
 /// The surfaces, curves and faces from which [`build`](super::complex::build) makes a domain.
@@ -277,4 +285,7 @@ pub struct ComplexSpec {
     pub curves: Vec<SpaceCurveSpec>,
     /// All faces, at least one.
     pub faces: Vec<SurfaceFaceSpec>,
+    /// The distance up to which ends of curves are one, and curves lie on their surfaces; by default a small fraction
+    /// of their size.
+    pub tolerance: Option<f64>,
 }

@@ -12,6 +12,7 @@ use glam::{DVec2, DVec3, DVec4};
 
 use super::curve::check_coordinates;
 use super::nurbs::{Basis, weighted};
+use super::spec::SurfaceShape;
 use crate::core::fault::Fault;
 use crate::core::kernel::box_tree::extent;
 
@@ -232,6 +233,24 @@ impl NurbsSurface {
         }
         surface.series = Series::of(&surface);
         Ok(surface)
+    }
+
+    /// Whether it is a parallelogram whose parameters are lengths along its sides, but for a factor.
+    pub fn is_parallelogram(&self) -> bool {
+        let degrees = self.bases.each_ref().map(Basis::degree);
+        let fourth = || self.control(1, 0) + self.control(0, 1) - self.control(0, 0) - self.control(1, 1);
+        degrees == [1, 1] && self.polynomial && self.weighted.len() == 4 && fourth().length() <= SAME * self.size
+    }
+
+    /// As a shape of a case.
+    pub fn shape(&self) -> SurfaceShape {
+        SurfaceShape::Nurbs {
+            degrees: self.bases.each_ref().map(Basis::degree),
+            knots: self.bases.each_ref().map(|basis| basis.knots().to_vec()),
+            weights: if self.polynomial { Vec::new() } else { self.weighted.iter().map(|p| p.w).collect() },
+            points: self.weighted.iter().map(|p| p.truncate() / p.w).collect(),
+            columns: self.columns,
+        }
     }
 
     /// The largest extent of the control points along an axis.

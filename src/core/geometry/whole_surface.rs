@@ -6,6 +6,7 @@ use glam::DVec2;
 
 use super::chart::{Chart, singular_edges};
 use super::curve::Curve;
+use super::lifting::Lifted;
 use super::named_curve::NamedCurve;
 use super::space_curve::SpaceCurve;
 use super::spec::{CurveShape, FaceSpec};
@@ -19,6 +20,10 @@ const UPPER_HALF: &str = ", upper half";
 pub(super) struct FacePart {
     pub spec: FaceSpec,
     pub surface: Arc<NurbsSurface>,
+    /// Whether its normal is against that of its surface.
+    pub reversed: bool,
+    /// It in its chart, where that is known from its directed loops.
+    pub lifted: Option<Lifted>,
     /// The singular edge at the centre of its chart; `None` if that is not yet known.
     pub about: Option<Edge>,
     /// Whether its outer loop is the edge of the surface itself.
@@ -37,6 +42,7 @@ type SurfacePart = ([[f64; 2]; 2], &'static str, Option<Edge>);
 pub(super) fn whole(
     face: &FaceSpec,
     surface: &Arc<NurbsSurface>,
+    reversed: bool,
     curves: &mut Vec<NamedCurve>,
     parts: &mut Vec<FacePart>,
 ) {
@@ -76,7 +82,7 @@ pub(super) fn whole(
         }
     };
     for (half, suffix, about) in halves {
-        let disc = about.is_some_and(|edge| Chart::about(Arc::clone(surface), edge).is_disc());
+        let disc = about.is_some_and(|edge| Chart::about(Arc::clone(surface), edge, reversed).is_disc());
         let mut spec = face.clone();
         spec.name = format!("{}{suffix}", face.name);
         // Lines from an apex that is not a pole divide the angle around it into thirds.
@@ -115,6 +121,8 @@ pub(super) fn whole(
         parts.push(FacePart {
             spec,
             surface: Arc::clone(surface),
+            reversed,
+            lifted: None,
             about,
             whole: true,
             half: poles.map(|axis| (axis, half[axis])),

@@ -42,7 +42,7 @@ pub(super) fn split<'t>(text: &'t str, file: &str) -> Result<(&'t str, usize), F
 pub(super) fn read(head: &str, file: &str, folder: &Path) -> Result<Head, Fault> {
     // One line before it, as in the file.
     let text = format!("\n{head}");
-    let source = Source { file, text: &text };
+    let source = Source::new(file, &text);
     let document = source.parse()?;
     let table = Table::document(&source, &document);
     table.only(&["title", "section", "case", "rules", "parameters"])?;

@@ -37,6 +37,8 @@ pub struct Further {
     pub lines: Vec<(Named, Vec<u32>)>,
     /// Groups of elements.
     pub faces: Option<Arc<GroupsByPlace>>,
+    /// Groups of whole faces, each with the numbers of its faces.
+    pub of_faces: Vec<(Named, Vec<u32>)>,
 }
 
 /// Groups of elements by their place: an element is in those of the given triangle around its middle.

@@ -86,7 +86,8 @@ pub fn background_with(case: &Case, more: &[i32], watch: &mut dyn Watch) -> Resu
         DomainSource::Mesh { source, taking } => (from_mesh(case, source, taking, watch), FaultKind::Mesh),
     };
     let sound = made.and_then(|made| refuse_needles(&made.mesh).map(|()| made));
-    let made = sound.map_err(|fault| fault.of_kind(kind))?;
+    let mut made = sound.map_err(|fault| fault.of_kind(kind))?;
+    made.repairs.splice(0..0, case.told.iter().cloned());
     watch.cancel().check()?;
     chosen_faces(made, &case.parameters.faces)
 }

@@ -1,5 +1,6 @@
 //! The background mesh of a domain of curves, in the plane or on surfaces.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use glam::DVec2;
@@ -102,6 +103,7 @@ pub(super) fn from_domain(
     let mut names = Names::of_faces(faces).with_lines(lines.names, sides);
     let own = case.points.iter().map(|point| vec![Some(Named::new(&point.name))]);
     let hard = half.as_ref().map_or(made.hard.clone(), |half| symmetric::hard_points(half, &made.mesh, &made.hard));
+    names.further.of_faces = groups_of_faces(domain);
     names.further.points = named_points(&lines.points.unwrap_or_else(|| own.collect()), &hard);
     let mut repairs = Vec::new();
     Repair::RepeatedPoint.report(domain.merged_points, &mut repairs);
@@ -109,6 +111,15 @@ pub(super) fn from_domain(
     Repair::ShapedCurve.report(shaped, &mut repairs);
     let mirror_line = half.map_or_else(Vec::new, |half| half.segments(&made.divided.chains));
     Ok(Background { mesh: made.mesh, sizing, names, adapted: made.adapted, repairs, spacing, mirror_line })
+}
+
+/// The groups of the faces of a domain, by name.
+fn groups_of_faces(domain: &Domain) -> Vec<(Named, Vec<u32>)> {
+    let mut groups: BTreeMap<&str, Vec<u32>> = BTreeMap::new();
+    for (number, face) in (0..).zip(&domain.faces) {
+        face.groups.iter().for_each(|group| groups.entry(group).or_default().push(number));
+    }
+    groups.into_iter().map(|(name, faces)| (Named::new(name), faces)).collect()
 }
 
 /// The lines and hard points of the file of a domain.

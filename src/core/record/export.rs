@@ -209,7 +209,7 @@ impl Export {
                 file.groups.push(Group { dimension, tag, name: name.to_owned() });
             }
         }
-        further::add(&mut export, mesh, names, &line_of);
+        further::add(&mut export, mesh, names, &line_of, &tags);
         (export, node_at)
     }
 

@@ -81,7 +81,7 @@ pub fn parse(text: &str, file: &str, folder: &Path) -> Result<Run, Fault> {
 }
 
 fn parsed(text: &str, file: &str, folder: &Path) -> Result<Run, Fault> {
-    let source = Source { file, text };
+    let source = Source::new(file, text);
     let document = source.parse()?;
     let table = Table::document(&source, &document);
     let version = table.need("run", "1")?;

@@ -37,7 +37,7 @@ impl Keys {
     /// Text that is not TOML.
     pub fn parse(text: &str, file: &str) -> Result<Keys, Fault> {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-        let source = Source { file, text };
+        let source = Source::new(file, text);
         let document = source.parse().map_err(|fault| fault.of_kind(FaultKind::Syntax))?;
         Ok(keys(document.get_ref(), text))
     }

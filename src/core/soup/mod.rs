@@ -15,7 +15,7 @@ pub use counting::{Count, Counting, Elements};
 pub use groups::Ignored;
 pub use mesh_file::{Data, Group, Members, MeshFile, Omitted, Texture};
 pub use not_read::NOT_READ;
-pub(in crate::core) use not_read::{CELL_DATA, EMPTY_GROUP, POINT_DATA};
+pub(in crate::core) use not_read::{CELL_DATA, EMPTY_GROUP, POINT_DATA, times};
 pub(in crate::core) use repairs::Repair;
 pub use soundness::{Allow, Defect, Soundness};
 pub(in crate::core) use weld::Welder;

@@ -59,7 +59,7 @@ impl MeshFile {
 }
 
 /// "tetrahedron (12 times)", or what it is alone where it is there once.
-fn times(what: &str, count: usize) -> String {
+pub(in crate::core) fn times(what: &str, count: usize) -> String {
     if count == 1 { what.to_owned() } else { format!("{what} ({count} times)") }
 }
 

@@ -9,10 +9,12 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 use glam::DVec3;
 use web_time::Instant;
 
+use crate::app::input;
 use crate::app::tasks::{self, Post, Serve};
 use crate::app::window::session::{EVERY, Wake, words_of};
 use crate::app::window::state::Progress;
 use crate::app::window::theme;
+use crate::core::case::ImportOptions;
 use crate::core::discrete::census::count_of;
 use crate::core::discrete::chart::charts;
 use crate::core::discrete::features::{features, with_lines};
@@ -21,7 +23,9 @@ use crate::core::discrete::{Census, Division, Edges, Feature, Repaired, StretchB
 use crate::core::fault::Fault;
 use crate::core::formats::format::read_mesh_watched;
 use crate::core::progress::{Cancel, Stage, Watch};
-use crate::core::soup::Ignored;
+use crate::core::record::Export;
+use crate::core::soup::MeshFile;
+use crate::core::{convert, step};
 use crate::render::scene::{Given, Scene};
 
 /// Kinds of features, in the order in which they are listed.
@@ -52,6 +56,17 @@ pub struct Loaded {
     pub extent: DVec3,
     /// Why it cannot be converted with any options; then the mesh is as in the file.
     pub fault: Option<Fault>,
+    /// The part, where the file is a CAD file; then the mesh is its background mesh.
+    pub part: Option<PartFacts>,
+}
+
+/// What is told of a part of a CAD file.
+pub struct PartFacts {
+    pub faces: usize,
+    pub edges: usize,
+    pub bodies: usize,
+    /// The unit of its lengths.
+    pub unit: String,
 }
 
 /// The options of a picture.
@@ -100,15 +115,15 @@ pub struct Preview {
 }
 
 impl Preview {
-    /// Starts to read a mesh without the groups that are ignored; `wake` is called when there is something to
-    /// hear.
-    pub fn of(path: PathBuf, ignored: Ignored, wake: Wake) -> Preview {
+    /// Starts to read a mesh without the groups that are ignored, or a CAD file; `wake` is called when there is
+    /// something to hear.
+    pub fn of(path: PathBuf, options: ImportOptions, wake: Wake) -> Preview {
         let (tell, told) = channel();
         let cancel = Cancel::new();
         let reading = cancel.clone();
         let (ask, _) = tasks::serve(move |_| {
             let mut voice = Voice { tell, wake, cancel: reading, last: None };
-            let loaded = load(&path, &ignored, &mut voice).map(Arc::new);
+            let loaded = load(&path, &options, &mut voice).map(Arc::new);
             let read = loaded.as_ref().ok().cloned();
             if !matches!(&loaded, Err(fault) if fault.is_stop()) {
                 voice.say(PreviewNews::Loaded(loaded));
@@ -167,8 +182,27 @@ impl Watch for Voice {
     }
 }
 
-fn load(path: &Path, ignored: &Ignored, voice: &mut Voice) -> Result<Loaded, Fault> {
-    let mut file = read_mesh_watched(path, None, voice)?;
+/// Reads a CAD file: its background mesh, and what was told of it.
+fn load_part(
+    path: &Path,
+    options: &ImportOptions,
+    voice: &mut Voice,
+) -> Result<(MeshFile, PartFacts, Vec<String>), Fault> {
+    let (case, part) = input::read_step(path, options, voice)?;
+    let background = convert::background(&case, voice)?;
+    let facts =
+        PartFacts { faces: part.spec.faces.len(), edges: part.spec.curves.len(), bodies: part.bodies, unit: part.unit };
+    Ok((Export::of(&background.mesh, &background.names).file, facts, background.repairs))
+}
+
+fn load(path: &Path, options: &ImportOptions, voice: &mut Voice) -> Result<Loaded, Fault> {
+    let (mut file, part) = if step::is_step(path) {
+        let (file, facts, told) = load_part(path, options, voice)?;
+        (file, Some((facts, told)))
+    } else {
+        (read_mesh_watched(path, None, voice)?, None)
+    };
+    let ignored = &options.ignore_groups;
     let place = |fault: Fault| if fault.is_stop() { fault } else { fault.at(path.display().to_string()) };
     file.ignore_groups(ignored).map_err(place)?;
     let (is_plane, has_metric, has_groups) = (file.is_plane(), file.metric.is_some(), !file.groups.is_empty());
@@ -188,6 +222,10 @@ fn load(path: &Path, ignored: &Ignored, voice: &mut Voice) -> Result<Loaded, Fau
     };
     drop(file);
     found.repairs.append(&mut not_read);
+    let part = part.map(|(facts, told)| {
+        found.repairs = told;
+        facts
+    });
     let edges = Edges::of(&found.mesh.triangles);
     voice.cancel.check()?;
     let census = Census::of(&found.mesh, &edges);
@@ -213,6 +251,7 @@ fn load(path: &Path, ignored: &Ignored, voice: &mut Voice) -> Result<Loaded, Fau
         mean_edge,
         extent,
         fault,
+        part,
     })
 }
 
@@ -276,8 +315,12 @@ impl Work {
                     first.wanted.bound = None;
                     self.voice.say(PreviewNews::Shown(Arc::new(first)));
                 }
-                let charts = charts(mesh, edges, &features, bound, &mut self.voice)?;
-                let division = Arc::new(Division::of(mesh, edges, &features, &charts));
+                let division = if loaded.part.is_some() {
+                    Division::of_regions(mesh, edges, &features)
+                } else {
+                    Division::of(mesh, edges, &features, &charts(mesh, edges, &features, bound, &mut self.voice)?)
+                };
+                let division = Arc::new(division);
                 self.division = Some((angle, bound, division.clone()));
                 Some(division)
             }
@@ -324,7 +367,7 @@ mod tests {
     #[test]
     fn of_many_wishes_the_last_one_is_shown() {
         let folder = tempfile::tempdir().unwrap();
-        let mut preview = Preview::of(tetrahedron(folder.path()), Ignored::Nothing, Arc::new(|| {}));
+        let mut preview = Preview::of(tetrahedron(folder.path()), ImportOptions::default(), Arc::new(|| {}));
         assert!(
             next(&preview, |told| matches!(told, PreviewNews::Loaded(Ok(loaded)) if loaded.census.nodes == 4))
                 .is_some()
@@ -348,7 +391,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("b.obj");
         std::fs::write(&path, "v 0 0 0\nf 1 2 3\n").unwrap();
-        let preview = Preview::of(path, Ignored::Nothing, Arc::new(|| {}));
+        let preview = Preview::of(path, ImportOptions::default(), Arc::new(|| {}));
         let told = next(&preview, |told| matches!(told, PreviewNews::Loaded(Err(_))));
         let Some(PreviewNews::Loaded(Err(fault))) = told else { panic!("no complaint") };
         assert!(fault.place.contains("b.obj, line 2") && fault.what.contains("vertex 3"), "{fault}");

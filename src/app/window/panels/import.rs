@@ -5,10 +5,12 @@ use eframe::egui::{
     Sense, Slider, SliderClamping, Ui, Vec2, WidgetInfo,
 };
 
+mod part;
+
 use super::{choice, heading, inset, line, note, on_click};
 use crate::app::window::command::Command;
 use crate::app::window::icons;
-use crate::app::window::import::{Gesture, Import, ImportOptions, KINDS, UNITS};
+use crate::app::window::import::{Gesture, Import, ImportOptions, KINDS, Shown, UNITS};
 use crate::app::window::state::{Progress, State};
 use crate::app::window::theme::{self, ink};
 use crate::app::window::words;
@@ -69,7 +71,12 @@ fn title(ui: &mut Ui, import: &Import, palette: &Palette) {
     ui.add_space(2.0);
     let text = RichText::new(name).font(theme::semibold(theme::TITLE)).color(ink(palette.strong));
     ui.add(egui::Label::new(text).truncate()).on_hover_text(import.path.display().to_string());
-    ui.label(note("A mesh without CAD: choose how to import it.", palette));
+    let kind = if import.is_part() {
+        "Faces on exact surfaces: choose the unit and the sizes."
+    } else {
+        "A mesh without CAD: choose how to import it."
+    };
+    ui.label(note(kind, palette));
 }
 
 /// Why the mesh was refused, and what to do.
@@ -98,7 +105,8 @@ fn refusal(ui: &mut Ui, import: &Import, palette: &Palette) {
 
 /// A remedy, with the panel's names in place of the command line's options.
 fn in_the_panel(remedy: &str) -> String {
-    let words = [("(--use shape)", REMESH), ("(--split-odd)", SPLIT_ODD)];
+    let words =
+        [("(--use shape)", REMESH), ("(--split-odd)", SPLIT_ODD), ("with --skip-bad-faces", part::SKIP_BAD_FACES)];
     words.into_iter().fold(remedy.to_owned(), |text, (option, word)| text.replace(option, &format!("(below: {word})")))
 }
 
@@ -133,19 +141,33 @@ fn number(ui: &mut Ui, value: &mut f64, [least, most]: [f64; 2], speed: f64, uni
 }
 
 fn form(ui: &mut Ui, import: &Import, commands: &mut Vec<Command>, palette: &Palette) {
-    let taking = import.taking();
     let mut options = import.options.clone();
     let mut dragging = false;
     heading(ui, "Import", "as on the command line", palette);
     ui.spacing_mut().item_spacing.y = 5.0;
-    unit(ui, &mut options, &taking, &mut dragging, palette);
+    if import.is_part() {
+        part::form(ui, &mut options, import, &mut dragging, palette);
+    } else {
+        form_of_mesh(ui, &mut options, import, &mut dragging, palette);
+    }
+    // The end of a drag is reported too.
+    let gesture = if dragging { Gesture::Dragging } else { Gesture::Done };
+    if options != import.options || import.gesture != gesture {
+        commands.push(Command::SetImport(Box::new(options), gesture));
+    }
+}
+
+/// The options of a mesh.
+fn form_of_mesh(ui: &mut Ui, options: &mut ImportOptions, import: &Import, dragging: &mut bool, palette: &Palette) {
+    let taking = import.taking();
+    unit(ui, options, &taking, dragging, palette);
     // Once groups are ignored, the mesh has none.
     let has_groups = import.loaded.as_ref().is_some_and(|loaded| loaded.has_groups);
     if has_groups || options.ignore_groups != Ignored::Nothing {
-        groups(ui, &mut options, palette);
+        groups(ui, options, palette);
     }
-    used(ui, &mut options, import, palette);
-    sizes(ui, &mut options, import, &mut dragging, palette);
+    used(ui, options, import, palette);
+    sizes(ui, options, import, dragging, palette);
     let charted = import.has_charts();
     ui.add_enabled_ui(charted, |ui| {
         let defaults = Taking::default();
@@ -154,7 +176,7 @@ fn form(ui: &mut Ui, import: &Import, commands: &mut Vec<Command>, palette: &Pal
             let default = hundredths(defaults.feature_angle.to_degrees());
             let before = options.feature_angle.unwrap_or(default);
             let mut degrees = before;
-            dragging |= measure(ui, &mut degrees, Taking::ANGLES, false, "°", "Feature angle");
+            *dragging |= measure(ui, &mut degrees, Taking::ANGLES, false, "°", "Feature angle");
             if degrees != before {
                 options.feature_angle = unless_default(degrees, default);
             }
@@ -163,7 +185,7 @@ fn form(ui: &mut Ui, import: &Import, commands: &mut Vec<Command>, palette: &Pal
         row(ui, "chart stretch", tip, palette, |ui| {
             let before = taking.chart_stretch;
             let mut stretch = before;
-            dragging |= measure(ui, &mut stretch, Taking::STRETCHES, true, "", "Chart stretch");
+            *dragging |= measure(ui, &mut stretch, Taking::STRETCHES, true, "", "Chart stretch");
             if stretch != before {
                 options.chart_stretch = unless_default(stretch, defaults.chart_stretch);
             }
@@ -172,11 +194,6 @@ fn form(ui: &mut Ui, import: &Import, commands: &mut Vec<Command>, palette: &Pal
     if !charted && import.loaded.is_some() {
         let text = "Triangles in the plane are converted as they are: features and charts are not needed.";
         ui.label(note(text, palette));
-    }
-    // The end of a drag is reported too.
-    let gesture = if dragging { Gesture::Dragging } else { Gesture::Done };
-    if options != import.options || import.gesture != gesture {
-        commands.push(Command::SetImport(Box::new(options), gesture));
     }
 }
 
@@ -271,7 +288,11 @@ fn sizes(ui: &mut Ui, options: &mut ImportOptions, import: &Import, dragging: &m
         (Some(_), None) => Sizing::Uniform,
         (Some(_), Some(_)) => Sizing::ByCurvature,
     };
-    let own = if loaded.has_metric { "as given in the mesh" } else { "as its triangles" };
+    let own = match (&loaded.part, loaded.has_metric) {
+        (Some(_), _) => "by its curvature and edges",
+        (None, true) => "as given in the mesh",
+        (None, false) => "as its triangles",
+    };
     let mut wanted = before;
     row(ui, "size", "The size of elements (--mesh-size, --curvature)", palette, |ui| {
         let name = |sizing: Sizing| match sizing {
@@ -317,11 +338,10 @@ fn sizes(ui: &mut Ui, options: &mut ImportOptions, import: &Import, dragging: &m
 
 fn counts(ui: &mut Ui, import: &Import, palette: &Palette) {
     let Some(loaded) = &import.loaded else { return };
-    heading(ui, "The mesh", "", palette);
+    heading(ui, if loaded.part.is_some() { "The part" } else { "The mesh" }, "", palette);
     let grouped = |n: usize| words::grouped(n as u64);
     let census = loaded.census;
     let extent = loaded.extent * import.taking().scale;
-    let named = |n: usize, one: &str, several: &str| format!("{} {}", grouped(n), if n == 1 { one } else { several });
     let grid = Grid::new("counts").num_columns(2).striped(false).spacing(Vec2::new(12.0, 4.0)).min_col_width(NAMES);
     grid.show(ui, |ui| {
         let mut row = |name: &str, value: String| {
@@ -330,6 +350,11 @@ fn counts(ui: &mut Ui, import: &Import, palette: &Palette) {
             ui.end_row();
         };
         row("extent", extent.to_array().map(three_digits).join(" × "));
+        if let Some(part) = &loaded.part {
+            part::counts(part, &mut row);
+            row("boundary loops", grouped(census.border_loops));
+            return;
+        }
         row("nodes", grouped(census.nodes));
         row("triangles", grouped(census.triangles));
         row("components", grouped(census.components));
@@ -340,6 +365,34 @@ fn counts(ui: &mut Ui, import: &Import, palette: &Palette) {
     });
     let Some(shown) = &import.shown else { return };
     ui.add_space(6.0);
+    if loaded.part.is_none() {
+        features(ui, shown, palette);
+    }
+    divisions(ui, import, shown, palette);
+    let repaired = loaded.repairs.iter().filter(|told| !told.starts_with(NOT_READ)).map(String::as_str).collect();
+    let not_read = loaded.repairs.iter().filter_map(|told| told.strip_prefix(NOT_READ)).collect();
+    let title = if loaded.part.is_some() { "Told" } else { "Repaired" };
+    told(ui, title, (icons::CHECK, palette.holds), repaired, palette);
+    told(ui, "Not read", (icons::X, palette.text), not_read, palette);
+}
+
+/// A list under a heading, each with an icon; nothing without entries.
+fn told(ui: &mut Ui, title: &str, (icon, colour): (&str, Rgba), entries: Vec<&str>, palette: &Palette) {
+    if entries.is_empty() {
+        return;
+    }
+    heading(ui, title, "", palette);
+    for entry in entries {
+        ui.horizontal(|ui| {
+            ui.label(RichText::new(icon).font(theme::regular(theme::TABLE)).color(ink(colour)));
+            ui.add(egui::Label::new(line(entry.to_owned(), palette.text)).wrap());
+        });
+    }
+}
+
+/// The features of a mesh, by kind.
+fn features(ui: &mut Ui, shown: &Shown, palette: &Palette) {
+    let named = named_count;
     for (kind, count) in KINDS.into_iter().zip(shown.counts) {
         let (one, several) = match kind {
             Feature::Fold => ("feature edge", "feature edges"),
@@ -353,6 +406,16 @@ fn counts(ui: &mut Ui, import: &Import, palette: &Palette) {
             swatch(ui, feature_line(palette, kind), named(count, one, several), palette);
         }
     }
+}
+
+/// A number with what is counted.
+fn named_count(n: usize, one: &str, several: &str) -> String {
+    format!("{} {}", words::grouped(n as u64), if n == 1 { one } else { several })
+}
+
+/// The charts of a mesh, or the faces of a part, in their colours.
+fn divisions(ui: &mut Ui, import: &Import, shown: &Shown, palette: &Palette) {
+    let named = named_count;
     match &shown.division {
         Some(division) => {
             let seams = division.seams.len();
@@ -369,31 +432,14 @@ fn counts(ui: &mut Ui, import: &Import, palette: &Palette) {
                         egui::Rect::from_min_size(rect.min + Vec2::new(k as f32 * width, 2.0), Vec2::new(width, 12.0));
                     ui.painter().rect_filled(part, 0.0, ink(*colour));
                 }
-                ui.label(line(named(division.charts, "chart", "charts"), palette.text));
+                let [one, several] = if import.is_part() { ["face", "faces"] } else { ["chart", "charts"] };
+                ui.label(line(named(division.charts, one, several), palette.text));
             });
         }
         None if import.has_charts() && import.refused.is_none() => {
             ui.label(note("The charts are being computed.", palette));
         }
         None => {}
-    }
-    let repaired = loaded.repairs.iter().filter(|told| !told.starts_with(NOT_READ)).map(String::as_str).collect();
-    let not_read = loaded.repairs.iter().filter_map(|told| told.strip_prefix(NOT_READ)).collect();
-    told(ui, "Repaired", (icons::CHECK, palette.holds), repaired, palette);
-    told(ui, "Not read", (icons::X, palette.text), not_read, palette);
-}
-
-/// A list under a heading, each with an icon; nothing without entries.
-fn told(ui: &mut Ui, title: &str, (icon, colour): (&str, Rgba), entries: Vec<&str>, palette: &Palette) {
-    if entries.is_empty() {
-        return;
-    }
-    heading(ui, title, "", palette);
-    for entry in entries {
-        ui.horizontal(|ui| {
-            ui.label(RichText::new(icon).font(theme::regular(theme::TABLE)).color(ink(colour)));
-            ui.add(egui::Label::new(line(entry.to_owned(), palette.text)).wrap());
-        });
     }
 }
 

@@ -50,8 +50,8 @@ impl Grouping {
         }
     }
 
-    /// Adds the group of the last element where it `is_again` the next one: version 2 lists an element of several groups
-    /// once for each. Returns whether that is so, and not one that is there twice in the same group.
+    /// Adds the group of the last element where it `is_again` the next one: version 2 lists an element of several
+    /// groups once for each. Returns whether that is so, and not one that is there twice in the same group.
     pub fn takes(&mut self, is_again: bool, tags: &mut [u32], group: u32) -> bool {
         let Some(tag) = tags.last_mut().filter(|_| is_again && group != 0) else { return false };
         let mut groups = self.groups(*tag);

@@ -34,8 +34,8 @@ pub(super) struct PolarMap {
 }
 
 impl PolarMap {
-    /// The secondary mapping about a singular edge of the surface.
-    pub fn new(surface: &NurbsSurface, edge: Edge) -> PolarMap {
+    /// The secondary mapping about a singular edge of the surface; its mirror image if `reversed`.
+    pub fn new(surface: &NurbsSurface, edge: Edge, reversed: bool) -> PolarMap {
         let domain = surface.domain();
         let apex = domain[edge.axis][usize::from(edge.last)];
         let [first, last] = domain[1 - edge.axis];
@@ -54,7 +54,7 @@ impl PolarMap {
         // The distance grows away from the edge, so (angle, distance) reverses orientation where (along, away) is (u,
         // v).
         let away_grows = !edge.last;
-        let clockwise = (edge.axis == 1) == away_grows;
+        let clockwise = ((edge.axis == 1) == away_grows) != reversed;
         let turn = if disc { turn.stretched_to(TAU) } else { turn };
         PolarMap { edge, apex, scale, turn, disc, clockwise }
     }

@@ -130,13 +130,13 @@ impl Domain {
         let Cutting { vertices, curves, joints, lines, .. } = cutting;
         let names: Vec<String> = self.faces.iter().map(|face| face.name.clone()).collect();
         let walks = loops::walks(&curves, &names, &vertices)?;
-        let faces = names.into_iter().zip(walks).map(|(name, walks)| {
+        let faces = self.faces.iter().zip(walks).map(|(face, walks)| {
             let mut loops: Vec<Vec<_>> = walks.clone();
             loops.iter_mut().for_each(|steps| steps.retain(|s| curves[s.curve.index()].kind == CurveKind::Boundary));
             loops.retain(|steps| !steps.is_empty());
             // The outer loop comes first: it alone is anticlockwise.
             loops.sort_by_key(|steps| loops::doubled_area(&loops::polygon(&curves, steps)) <= 0.0);
-            DomainFace { name, loops, walks }
+            DomainFace { name: face.name.clone(), groups: face.groups.clone(), loops, walks }
         });
         let faces = faces.collect();
         let tolerance = Extent::of(&self.curves)?.tolerance;

@@ -6,13 +6,14 @@ use glam::DVec2;
 
 use super::{Export, NONE};
 use crate::core::kernel::PlaneTriangles;
-use crate::core::mesh::{GroupsByPlace, Mesh, Named, Names};
+use crate::core::mesh::{ElementId, GroupsByPlace, Mesh, Named, Names};
 use crate::core::soup::{Group, Members};
 
-/// Adds the members of further groups; `line_of` has the line of each exported line.
-pub(super) fn add(export: &mut Export, mesh: &Mesh, names: &Names, line_of: &[Option<u32>]) {
+/// Adds the members of further groups; `line_of` has the line of each exported line, `tags` the tag of each face.
+pub(super) fn add(export: &mut Export, mesh: &Mesh, names: &Names, line_of: &[Option<u32>], tags: &[u32]) {
     let further = &names.further;
     points(export, mesh, names);
+    of_faces(export, mesh, names, tags);
     for (named, lines) in &further.lines {
         let is_in = |k: &u32| line_of[*k as usize].is_some_and(|line| lines.contains(&line));
         members(export, 1, named, (0..line_of.len() as u32).filter(is_in).collect());
@@ -23,6 +24,26 @@ pub(super) fn add(export: &mut Export, mesh: &Mesh, names: &Names, line_of: &[Op
             let of = if of.is_empty() { around(export, groups, &groups.groups[k].1) } else { of };
             members(export, 2, named, of);
         }
+    }
+}
+
+/// Adds the groups of whole faces. A group with the name of a face has its tag.
+fn of_faces(export: &mut Export, mesh: &Mesh, names: &Names, tags: &[u32]) {
+    if names.further.of_faces.is_empty() {
+        return;
+    }
+    let (live, dead): (Vec<ElementId>, Vec<ElementId>) = mesh.elements().partition(|e| mesh.is_triangle(*e));
+    let regions: Vec<u32> = live.iter().chain(&dead).map(|e| mesh.region(*e)).collect();
+    let mut free = (1..).filter(|tag| !tags.contains(tag));
+    for (named, faces) in &names.further.of_faces {
+        let same = names.faces.iter().position(|face| face.name == named.name);
+        let tag = same.map(|face| tags[face]).or_else(|| free.next());
+        let is_in = |k: &u32| {
+            let region = regions[*k as usize];
+            faces.contains(&region) && Some(tags[region as usize]) != tag
+        };
+        let of = (0..regions.len() as u32).filter(is_in).collect();
+        members(export, 2, &Named { tag, ..named.clone() }, of);
     }
 }
 

@@ -31,7 +31,7 @@ pub fn alone(run: &Run) -> Result<String, Fault> {
 /// # Errors
 /// Those of [`parse`], and a run that names a file.
 pub fn parse_alone(text: &str, file: &str) -> Result<Run, Fault> {
-    let source = Source { file, text };
+    let source = Source::new(file, text);
     let document = source.parse().map_err(|fault| fault.of_kind(FaultKind::Syntax))?;
     let case = Table::document(&source, &document).get("case").and_then(|value| value.table().ok());
     let named = case.and_then(|case| ["mesh", "sol"].into_iter().find_map(|key| case.get(key)));

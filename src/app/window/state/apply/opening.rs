@@ -15,13 +15,14 @@ use crate::core::fault::Fault;
 use crate::core::formats::Format;
 use crate::core::record::run_file;
 use crate::core::run::Run;
+use crate::core::step::is_step;
 
 impl State {
     /// Opens a case or a mesh with its parameters changed; what is open stays until the other one is ready. A mesh is
     /// shown before it is converted.
     pub(super) fn open(&mut self, source: Source, overrides: Overrides) {
         if let Source::File(path) = &source
-            && Format::from_path(path).is_ok()
+            && (Format::from_path(path).is_ok() || is_step(path))
         {
             self.wanted = None;
             return self.import(path.clone(), ImportOptions::default(), overrides);

@@ -17,6 +17,7 @@ use crate::core::fault::Fault;
 use crate::core::formats::Format;
 use crate::core::run::Run;
 use crate::core::run::copies::Since;
+use crate::core::step::is_step;
 use crate::render::scene::Outlined;
 
 /// What a command is for, where there are two runs.
@@ -197,7 +198,9 @@ impl State {
     fn open_beside(&mut self, source: Source, overrides: Overrides) {
         let source = match source {
             // A mesh is imported as it is.
-            Source::File(path) if Format::from_path(&path).is_ok() => Source::Mesh(path, Default::default()),
+            Source::File(path) if Format::from_path(&path).is_ok() || is_step(&path) => {
+                Source::Mesh(path, Default::default())
+            }
             source => source,
         };
         let (named, changed) = (source.clone(), overrides.clone());
