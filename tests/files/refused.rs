@@ -52,7 +52,7 @@ fn what_is_broken_is_refused_with_its_line_and_a_reason() {
         (Format::Medit, format!("{sol}0 0 0\nEdges 1000000\n1 1 0\n"), "1000000 as a number of elements is more than"),
         (Format::Obj, "v 0 0\n".into(), "a, line 1: Expected a coordinate, found \"\""),
         (Format::Obj, "v 0 0 0\n\nf 1 1 2\nf 1 1 1\n".into(), "a, line 3: A face or line refers to vertex 2 of 1"),
-        (Format::Obj, "v 0 0 0\nf 1 1 -2\n".into(), "line 2: Expected a vertex of the face, found \"-2\""),
+        (Format::Obj, "v 0 0 0\nf 1 1 -2\n".into(), "line 2: A face or line refers to vertex -2 of 1"),
         (Format::Obj, "v 0 0 inf\n".into(), "line 1: Expected a coordinate"),
         (Format::Inp, format!("{nodes}*ELEMENT, TYPE=S4\n1, 1, 2, 3\n"), "line 6: Expected a node of the element"),
         (Format::Inp, format!("{nodes}2, 1, 1\n*Element, type=S3\n"), "node number 2 is used twice"),

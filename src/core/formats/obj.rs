@@ -1,12 +1,10 @@
 //! Wavefront OBJ: vertices, faces with texture coordinates, lines, and their groups or objects. Deliberately absent:
-//! everything else (normals, materials), which is told as not read.
-//!
-//! Tests compare the reader with the crate `tobj`, which is not the reader itself: it keeps neither the numbers of
-//! vertices nor the lines of the file, by which messages name what is wrong; it holds a hundred bytes for each face
-//! until the end of its group; and it takes twice the time.
+//! everything else (normals, materials), which is told as not read. The crate `tobj` is the reader, behind a pass that
+//! gives it clean lines and keeps what it does not.
 
-mod statements;
+mod clean_lines;
 mod read;
+mod statements;
 
 use std::io::{self, Write};
 

@@ -74,6 +74,7 @@ impl<'a> Scanner<'a> {
             self.report_at = self.at + REPORT_EVERY;
             if self.pace.is_some_and(|pace| !pace.goes_on(self.at, self.whole)) {
                 self.at = self.bytes.len();
+                self.report_at = usize::MAX;
             }
         }
     }
@@ -154,9 +155,9 @@ impl<'a> Scanner<'a> {
         self.at -= 1;
     }
 
-    /// The next word without moving.
+    /// The next word without moving, and so without a report of progress.
     pub fn peek(&self) -> Option<&'a [u8]> {
-        self.clone().word()
+        Scanner { pace: None, ..self.clone() }.word()
     }
 
     /// The rest of this line, trimmed; moves to the next line. `None` at the end.

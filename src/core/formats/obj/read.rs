@@ -1,113 +1,78 @@
-//! Reading OBJ.
-
-use std::collections::BTreeMap;
+//! Reading OBJ: the crate `tobj` reads clean lines ([`CleanLines`]); here its elements become those of a mesh, in the
+//! order and with the numbers of the file, and its errors get words and the lines of the file.
 
 use glam::{DVec2, DVec3};
 
-use super::statements::Statements;
+use super::clean_lines::{CleanLines, Kept};
+use super::statements::{Statements, words};
 use crate::core::fault::Fault;
 use crate::core::formats::scan::{Scanner, parse_integer, parse_real, shown};
 use crate::core::progress::Pace;
-use crate::core::soup::{EMPTY_GROUP, Group, MeshFile, Texture};
-
-/// Statements that are not read, with what they are about.
-const UNREAD: [(&[u8], &str); 9] = [
-    (b"vn", "normal"),
-    (b"vp", "parameters"),
-    (b"p", "point"),
-    (b"s", "smoothing group"),
-    (b"usemtl", "material"),
-    (b"mtllib", "material library"),
-    (b"curv", "curve"),
-    (b"curv2", "curve on a surface"),
-    (b"surf", "surface"),
-];
-
-/// Keywords of such statements that are counted.
-const MOST_UNREAD: usize = 50;
+use crate::core::soup::{MeshFile, Texture};
 
 /// Reads vertices, triangles, quadrilaterals, polygons and lines.
 ///
 /// # Errors
 /// With the line: a malformed vertex, face or line, or a reference to a missing vertex.
 pub fn read(name: &str, bytes: &[u8], pace: &dyn Pace) -> Result<MeshFile, Fault> {
-    let mut s = Statements::new(Scanner::new(name, bytes).watched(pace));
-    let mut mesh = MeshFile::default();
-    let mut corners: Vec<u32> = Vec::new();
+    let statements = || Statements::new(Scanner::new(name, bytes));
+    let mut lines = CleanLines::new(Statements::new(Scanner::new(name, bytes).watched(pace)), statements());
+    let found = tobj::load_obj_buf(&mut lines, &tobj::LoadOptions::default(), |_| Ok(Default::default()));
+    let found = match found {
+        // Without elements there is no model.
+        Ok((models, _)) => models.into_iter().next().map(|model| model.mesh).unwrap_or_default(),
+        Err(tobj::LoadError::FaceVertexOutOfBounds) => return Err(out_of_bounds(statements())),
+        Err(_) => return Err(malformed(&lines)),
+    };
+    let kept = lines.kept();
+    if let Some(vertex) = found.positions.iter().position(|x| !x.is_finite()) {
+        return Err(infinite(statements(), vertex / 3));
+    }
+    mesh_of(found, kept).map_err(|element| too_few_corners(statements(), element))
+}
+
+/// The elements that `tobj` has found as a mesh; or, counted over faces and lines, the first face with fewer than three
+/// vertices.
+fn mesh_of(found: tobj::Mesh, kept: Kept) -> Result<MeshFile, usize> {
+    let mut mesh = kept.mesh;
+    mesh.points = found.positions.chunks_exact(3).map(DVec3::from_slice).collect();
+    let uv = found.texcoords.chunks_exact(2).map(DVec2::from_slice).collect();
+    let mut texture = Texture { uv, ..Texture::default() };
+    // Where all elements are triangles there are no arities.
+    let triangles = if found.face_arities.is_empty() { found.indices.len() / 3 } else { 0 };
+    let arities = found.face_arities.iter().copied().chain(std::iter::repeat_n(3, triangles));
+    let mut at = 0;
+    let ranges = arities.map(|arity| {
+        at += arity as usize;
+        at - arity as usize..at
+    });
+    let mut runs = kept.runs.iter().peekable();
+    let mut untextured = kept.untextured.iter().peekable();
+    let mut run = None;
     let mut faces = 0;
-    // A face may precede its vertices: the largest index, with its position in the file, is checked at the end.
-    let mut largest = (0, 0);
-    let [mut names, mut line_names] = [2, 1].map(|dimension| GroupNames { dimension, ..GroupNames::default() });
-    let mut texture = Texture::default();
-    let mut corners_uv: Vec<u32> = Vec::new();
-    let mut colours = 0;
-    let mut unread: Vec<(Vec<u8>, usize)> = Vec::new();
-    while let Some(statement) = s.next() {
-        let mut words = statement.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty());
-        match words.next() {
-            Some(b"v") => {
-                let mut p = DVec3::ZERO;
-                for axis in 0..3 {
-                    let word = words.next().unwrap_or_default();
-                    let coordinate = parse_real(word).filter(|x| x.is_finite());
-                    p[axis] = coordinate.ok_or_else(|| s.unexpected(word, "a coordinate"))?;
-                }
-                mesh.points.push(p);
-                colours += usize::from(words.nth(2).is_some());
+    for (element, range) in ranges.skip(kept.calls).enumerate() {
+        run = runs.next_if(|next| next.first == element).or(run);
+        let Some(run) = run else { continue };
+        let corners = &found.indices[range.clone()];
+        if !run.of_faces {
+            for ends in corners.windows(2) {
+                mesh.lines.push([ends[0], ends[1]]);
+                mesh.line_tags.push(run.tag);
             }
-            Some(b"vt") => {
-                // A malformed coordinate becomes NaN, and its faces have no texture.
-                let mut coordinate = || words.next().and_then(parse_real).unwrap_or(f64::NAN);
-                texture.uv.push(DVec2::new(coordinate(), coordinate()));
-            }
-            Some(b"f") => {
-                corners_uv.clear();
-                corners_uv.extend(words.clone().map(|word| texture_corner(word, texture.uv.len())));
-                take_corners(&s, words, mesh.points.len(), "face", &mut largest, &mut corners)?;
-                let tag = names.tag(&mut mesh);
-                faces += 1;
-                let tags = mesh.push_face(&corners, faces);
-                tags.ok_or_else(|| s.fault_at(s.mark(), "A face has fewer than three vertices"))?.push(tag);
-                match corners_uv[..] {
-                    [a, b, c] => texture.set_triangle(mesh.triangles.len() - 1, [a, b, c]),
-                    [a, b, c, d] => texture.set_quad(mesh.quads.len() - 1, [a, b, c, d]),
-                    _ => texture.polygons.push(corners_uv.clone()),
-                }
-            }
-            // A group within an object overrides it; a face in several groups belongs to the first.
-            Some(b"g" | b"o") => {
-                tell_empty(&mut mesh, &names, &line_names);
-                names.next = words.next().map(|name| String::from_utf8_lossy(name).into_owned());
-                line_names.next.clone_from(&names.next);
-                words.for_each(|further| mesh.omit("further name of a group", &shown(further)));
-            }
-            Some(b"l") => {
-                take_corners(&s, words, mesh.points.len(), "line", &mut largest, &mut corners)?;
-                let tag = line_names.tag(&mut mesh);
-                for ends in corners.windows(2) {
-                    mesh.lines.push([ends[0], ends[1]]);
-                    mesh.line_tags.push(tag);
-                }
-            }
-            Some(keyword) => match unread.iter().position(|known| known.0 == keyword) {
-                Some(at) => unread[at].1 += 1,
-                None if unread.len() < MOST_UNREAD => unread.push((keyword.to_vec(), 1)),
-                None => {}
-            },
-            None => {}
+            continue;
         }
-    }
-    if largest.0 > mesh.points.len() {
-        let what = format!("A face or line refers to vertex {} of {}", largest.0, mesh.points.len());
-        return Err(s.fault_at(largest.1, what));
-    }
-    tell_empty(&mut mesh, &names, &line_names);
-    for (keyword, count) in unread {
-        let about = UNREAD.iter().find(|unread| unread.0 == keyword).map(|unread| format!(" ({})", unread.1));
-        mesh.omit_many("statement", &format!("{}{}", shown(&keyword), about.unwrap_or_default()), count);
-    }
-    if colours > 0 {
-        mesh.omit_many("vertex", "colour", colours);
+        faces += 1;
+        mesh.push_face(corners, faces).ok_or(element)?.push(run.tag);
+        let textured = untextured.next_if(|next| **next == element).is_none();
+        match *found.texcoord_indices.get(range).filter(|_| textured).unwrap_or_default() {
+            [] => {}
+            [a, b, c] => texture.set_triangle(mesh.triangles.len() - 1, [a, b, c]),
+            [a, b, c, d] => texture.set_quad(mesh.quads.len() - 1, [a, b, c, d]),
+            ref corners => {
+                texture.polygons.resize(mesh.polygons.len() - 1, Vec::new());
+                texture.polygons.push(corners.to_vec());
+            }
+        }
     }
     mesh.counting.shared = true;
     mesh.texture = texture.filled(&mesh);
@@ -125,68 +90,63 @@ pub fn read(name: &str, bytes: &[u8], pace: &dyn Pace) -> Result<MeshFile, Fault
     Ok(mesh)
 }
 
-/// The groups of faces, or of lines, in the order of their first members.
-#[derive(Default)]
-struct GroupNames {
-    dimension: u8,
-    tags: BTreeMap<String, u32>,
-    /// The group of the following elements, until the first of them is read.
-    next: Option<String>,
-    current: u32,
+/// The fault of the statement that `tobj` has refused: its first word that is not what it must be.
+fn malformed(lines: &CleanLines) -> Fault {
+    let mut words = words(&lines.statement);
+    let (wrong, expected) = match words.next() {
+        Some(b"v") => {
+            let mut coordinates = [(); 3].map(|()| words.next().unwrap_or_default()).into_iter();
+            (coordinates.find(|word| parse_real(word).is_none()), "a coordinate")
+        }
+        Some(b"l") => (words.find(|word| vertex(word).is_none()), "a vertex of the line"),
+        _ => (words.find(|word| vertex(word).is_none()), "a vertex of the face"),
+    };
+    lines.statements.unexpected(wrong.unwrap_or_default(), expected)
 }
 
-impl GroupNames {
-    /// The tag of the next face or line; adds its group to the mesh if this is its first member.
-    fn tag(&mut self, mesh: &mut MeshFile) -> u32 {
-        if let Some(name) = self.next.take() {
-            let new = self.tags.len() as u32 + 1;
-            self.current = *self.tags.entry(name.clone()).or_insert(new);
-            if self.current == new {
-                mesh.groups.push(Group { dimension: self.dimension, tag: new, name });
+/// The number before the first `/` of a corner; negative ones count back from the last vertex so far.
+fn vertex(word: &[u8]) -> Option<i64> {
+    parse_integer(word.split(|&b| b == b'/').next()?)
+}
+
+/// The fault of the first element with a vertex that the file does not have.
+fn out_of_bounds(mut s: Statements) -> Fault {
+    let mut all = s.clone();
+    let count = std::iter::from_fn(|| all.next()).filter(|statement| words(statement).next() == Some(b"v")).count();
+    let mut so_far = 0;
+    while let Some(statement) = s.next() {
+        let mut words = words(&statement);
+        match words.next() {
+            Some(b"v") => so_far += 1,
+            Some(b"f" | b"l") => {
+                let exists = |word: &[u8]| match vertex(word) {
+                    Some(number @ 0..) => (1..=count as u64).contains(&number.unsigned_abs()),
+                    Some(number) => number.unsigned_abs() <= so_far,
+                    None => false,
+                };
+                if let Some(word) = words.find(|word| !exists(word)) {
+                    let vertex = word.split(|&b| b == b'/').next().unwrap_or_default();
+                    let what = format!("A face or line refers to vertex {} of {count}", shown(vertex));
+                    return s.fault_at(s.mark(), what);
+                }
             }
+            _ => {}
         }
-        self.current
     }
+    s.fault_at(s.mark(), "A face or line refers to a vertex that the file does not have")
 }
 
-/// Tells of a group that ends without any face or line.
-fn tell_empty(mesh: &mut MeshFile, names: &GroupNames, line_names: &GroupNames) {
-    if let (Some(name), Some(_)) = (&names.next, &line_names.next)
-        && ![names, line_names].iter().any(|names| names.tags.contains_key(name))
-    {
-        mesh.omit(EMPTY_GROUP, &format!("\"{}\"", shown(name.as_bytes())));
-    }
+/// The fault of a vertex with an infinite coordinate or one that is not a number.
+fn infinite(mut s: Statements, vertex: usize) -> Fault {
+    let mut vertices = std::iter::from_fn(|| s.next()).filter(|statement| words(statement).next() == Some(b"v"));
+    let statement = vertices.nth(vertex).unwrap_or_default();
+    let wrong = words(&statement).skip(1).find(|word| parse_real(word).is_none_or(|x| !x.is_finite()));
+    s.unexpected(wrong.unwrap_or_default(), "a coordinate")
 }
 
-/// Reads the vertices of a face or line into `corners`; `largest` keeps the largest number so far and its line's mark.
-fn take_corners<'w>(
-    s: &Statements,
-    words: impl Iterator<Item = &'w [u8]>,
-    so_far: usize,
-    of: &str,
-    largest: &mut (usize, usize),
-    corners: &mut Vec<u32>,
-) -> Result<(), Fault> {
-    corners.clear();
-    for word in words {
-        let vertex = corner(word, so_far).ok_or_else(|| s.unexpected(word, &format!("a vertex of the {of}")))?;
-        if vertex as usize >= largest.0 {
-            *largest = (vertex as usize + 1, s.mark());
-        }
-        corners.push(vertex);
-    }
-    Ok(())
-}
-
-/// The zero-based vertex of `v`, `v/vt`, `v//vn` or `v/vt/vn`; a negative number counts back from the last vertex so
-/// far.
-fn corner(word: &[u8], so_far: usize) -> Option<u32> {
-    let vertex = parse_integer(word.split(|&b| b == b'/').next()?)?;
-    let index = if vertex < 0 { vertex.checked_add(so_far as i64)? } else { vertex - 1 };
-    u32::try_from(index).ok().filter(|&index| index < u32::MAX)
-}
-
-/// The zero-based texture coordinate of `v/vt` or `v/vt/vn`, numbered like vertices; [`Texture::NONE`] without one.
-fn texture_corner(word: &[u8], so_far: usize) -> u32 {
-    corner(word.split(|&b| b == b'/').nth(1).unwrap_or_default(), so_far).unwrap_or(Texture::NONE)
+/// The fault of a face, counted over faces and lines.
+fn too_few_corners(mut s: Statements, element: usize) -> Fault {
+    let is_element = |statement: &[u8]| matches!(words(statement).next(), Some(b"f" | b"l"));
+    std::iter::from_fn(|| s.next()).filter(|statement| is_element(statement)).nth(element);
+    s.fault_at(s.mark(), "A face has fewer than three vertices")
 }

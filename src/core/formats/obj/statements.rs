@@ -6,7 +6,13 @@ use std::borrow::Cow;
 use crate::core::fault::Fault;
 use crate::core::formats::scan::{Scanner, shown};
 
+/// The words of a statement: its keyword, then what follows.
+pub(super) fn words(statement: &[u8]) -> impl Iterator<Item = &[u8]> + Clone {
+    statement.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty())
+}
+
 /// Takes an OBJ file apart.
+#[derive(Clone)]
 pub(super) struct Statements<'a> {
     scanner: Scanner<'a>,
     /// Where the current statement begins.
