@@ -91,15 +91,10 @@ pub fn map(
                 right[t[i] as usize] -= side;
             }
         }
-        let side = |axis: usize| -> Option<Vec<f64>> {
-            go_on()?;
-            let b: Vec<f64> = (1..n).map(|i| right[i][axis] / sums[i]).collect();
-            solver.solve(&b)
-        };
-        let (x, y) = (side(0)?, side(1)?);
+        go_on()?;
+        right.iter_mut().zip(&sums).for_each(|(right, sum)| *right /= *sum);
         let mut moved = 0.0_f64;
-        for (p, (x, y)) in uv[1..].iter_mut().zip(x.into_iter().zip(y)) {
-            let to = DVec2::new(x, y);
+        for (p, to) in uv[1..].iter_mut().zip(solver.solve(&right[1..])?) {
             moved = moved.max(p.distance_squared(to));
             *p = to;
         }

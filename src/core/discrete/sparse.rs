@@ -6,7 +6,7 @@
 
 use std::cmp::Ordering;
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 use super::dissection::{self, Pattern};
 
@@ -47,8 +47,8 @@ impl Means {
     }
 
     /// The residual b - (I - W) x.
-    fn residual(&self, x: &[f64], b: &[f64]) -> Vec<f64> {
-        let times = |i: usize| self.row(i).map(|k| self.value[k] * x[self.column[k] as usize]).sum::<f64>();
+    fn residual(&self, x: &[DVec2], b: &[DVec2]) -> Vec<DVec2> {
+        let times = |i: usize| self.row(i).map(|k| self.value[k] * x[self.column[k] as usize]).sum::<DVec2>();
         b.iter().enumerate().map(|(i, b)| b - times(i)).collect()
     }
 
@@ -74,7 +74,7 @@ impl Means {
             return None;
         }
         let mut end: Vec<usize> = start[..n].to_vec();
-        let mut entries = vec![Entry::default(); start[n]];
+        let mut factors = Factors::of(start[n]);
         let mut diagonal = vec![0.0; n];
         let (mut left, mut above) = (vec![0.0; n], vec![0.0; n]);
         reach.mark.fill(NONE);
@@ -98,17 +98,19 @@ impl Means {
                 let i = i as usize;
                 let (l, u) = (left[i] / diagonal[i], above[i]);
                 (left[i], above[i]) = (0.0, 0.0);
-                for entry in &entries[start[i]..end[i]] {
-                    left[entry.row as usize] -= l * entry.upper;
-                    above[entry.row as usize] -= entry.lower * u;
+                let so_far = start[i]..end[i];
+                let values = factors.lower[so_far.clone()].iter().zip(&factors.upper[so_far.clone()]);
+                for (&row, (lower, upper)) in factors.row[so_far].iter().zip(values) {
+                    left[row as usize] -= l * upper;
+                    above[row as usize] -= lower * u;
                 }
                 pivot -= l * u;
-                entries[end[i]] = Entry { row: k as u32, lower: l, upper: u };
+                (factors.row[end[i]], factors.lower[end[i]], factors.upper[end[i]]) = (k as u32, l, u);
                 end[i] += 1;
             }
             diagonal[k] = pivot;
         }
-        Some(Solver { means: self, order, start, entries, diagonal })
+        Some(Solver { means: self, order, start, factors, diagonal })
     }
 
     /// The entry of a row in a column.
@@ -170,12 +172,18 @@ impl Reach {
     }
 }
 
-/// An entry of L and its mirror in U.
-#[derive(Clone, Copy, Default)]
-struct Entry {
-    row: u32,
-    lower: f64,
-    upper: f64,
+/// The entries of L, and their mirror images in U, column by column of L. Arrays of their own, because each half of a
+/// solution reads one of them: its time is that of reading memory.
+struct Factors {
+    row: Vec<u32>,
+    lower: Vec<f64>,
+    upper: Vec<f64>,
+}
+
+impl Factors {
+    fn of(entries: usize) -> Factors {
+        Factors { row: vec![0; entries], lower: vec![0.0; entries], upper: vec![0.0; entries] }
+    }
 }
 
 /// A factored matrix.
@@ -185,31 +193,35 @@ pub struct Solver {
     order: Vec<u32>,
     /// Offset of each column of L.
     start: Vec<usize>,
-    entries: Vec<Entry>,
+    factors: Factors,
     diagonal: Vec<f64>,
 }
 
 impl Solver {
-    /// The solution for a right-hand side, refined once; `None` if it is not finite.
-    pub fn solve(&self, b: &[f64]) -> Option<Vec<f64>> {
+    /// The solution for right-hand sides of two coordinates, refined once; `None` if it is not finite.
+    pub fn solve(&self, b: &[DVec2]) -> Option<Vec<DVec2>> {
         let mut x = self.once(b);
         let more = self.once(&self.means.residual(&x, b));
         x.iter_mut().zip(more).for_each(|(x, more)| *x += more);
         x.iter().all(|x| x.is_finite()).then_some(x)
     }
 
-    fn once(&self, b: &[f64]) -> Vec<f64> {
-        let mut y: Vec<f64> = self.order.iter().map(|&old| b[old as usize]).collect();
-        let of = |i: usize| &self.entries[self.start[i]..self.start[i + 1]];
+    fn once(&self, b: &[DVec2]) -> Vec<DVec2> {
+        let mut y: Vec<DVec2> = self.order.iter().map(|&old| b[old as usize]).collect();
+        let of = |values, i: usize| {
+            let column = self.start[i]..self.start[i + 1];
+            let values: &[f64] = values;
+            self.factors.row[column.clone()].iter().zip(&values[column])
+        };
         for i in 0..y.len() {
             let own = y[i];
-            of(i).iter().for_each(|entry| y[entry.row as usize] -= entry.lower * own);
+            of(&self.factors.lower, i).for_each(|(&row, &lower)| y[row as usize] -= lower * own);
         }
         for i in (0..y.len()).rev() {
-            let known: f64 = of(i).iter().map(|entry| entry.upper * y[entry.row as usize]).sum();
+            let known: DVec2 = of(&self.factors.upper, i).map(|(&row, &upper)| upper * y[row as usize]).sum();
             y[i] = (y[i] - known) / self.diagonal[i];
         }
-        let mut x = vec![0.0; y.len()];
+        let mut x = vec![DVec2::ZERO; y.len()];
         self.order.iter().zip(y).for_each(|(&old, y)| x[old as usize] = y);
         x
     }
@@ -235,10 +247,12 @@ mod tests {
             near.into_iter().map(|other| (other, weight)).collect()
         });
         let solver = Means::new(rows).factored(&mesh.points, &|| true).expect("little fill-in");
-        let x = solver.solve(&vec![1.0; n]).expect("a solution");
-        let largest = solver.means.residual(&x, &vec![1.0; n]).into_iter().fold(0.0_f64, |most, r| most.max(r.abs()));
+        let ones = vec![DVec2::ONE; n];
+        let x = solver.solve(&ones).expect("a solution");
+        let residual = solver.means.residual(&x, &ones).into_iter();
+        let largest = residual.fold(0.0_f64, |most, r| most.max(r.abs().max_element()));
         assert!(largest < 1e-9, "{largest}");
-        solver.entries.len() as f64 / n as f64
+        solver.factors.row.len() as f64 / n as f64
     }
 
     #[test]
@@ -275,15 +289,19 @@ mod tests {
                 }
                 row
             };
-            let mut b = vec![0.0; n as usize];
-            b[n as usize - 1] = 1.0 - pull;
+            // The second coordinate is fixed at the other end.
+            let (first, last) = (DVec2::new(0.0, 1.0), DVec2::new(1.0, 0.0));
+            let mut b = vec![DVec2::ZERO; n as usize];
+            b[0] = pull * first;
+            b[n as usize - 1] = (1.0 - pull) * last;
             let x = Means::new((0..n).map(row)).factored(&places, &|| true).unwrap().solve(&b).unwrap();
             for i in 0..n as usize {
-                let before = if i == 0 { 0.0 } else { x[i - 1] };
-                let after = if i + 1 == n as usize { 1.0 } else { x[i + 1] };
-                assert!((x[i] - pull * before - (1.0 - pull) * after).abs() < 1e-12);
+                let before = if i == 0 { first } else { x[i - 1] };
+                let after = if i + 1 == n as usize { last } else { x[i + 1] };
+                assert!((x[i] - pull * before - (1.0 - pull) * after).length() < 1e-12);
             }
-            assert!(pull != 0.5 || (x[499] - 500.0 / 1001.0).abs() < 1e-9, "{}", x[499]);
+            let share = 500.0 / 1001.0;
+            assert!(pull != 0.5 || x[499].distance(DVec2::new(share, 1.0 - share)) < 1e-9, "{}", x[499]);
         }
     }
 
@@ -301,12 +319,13 @@ mod tests {
             let sum: f64 = row.iter().map(|w| w.1).sum::<f64>() + if row.len() < 4 { 1.0 } else { 0.0 };
             row.into_iter().map(|(j, w)| (j, w / sum)).collect()
         });
-        let b: Vec<f64> = (0..N * N).map(|i| f64::from(i * 13 % 29) - 14.0).collect();
+        let b: Vec<DVec2> =
+            (0..N * N).map(|i| DVec2::new(f64::from(i * 13 % 29) - 14.0, f64::from(i * 7 % 31) - 15.0)).collect();
         let solver = Means::new(rows).factored(&places, &|| true).unwrap();
         let x = solver.solve(&b).unwrap();
-        let largest = |x: &[f64]| x.iter().fold(0.0_f64, |largest, x| x.abs().max(largest));
+        let largest = |x: &[DVec2]| x.iter().fold(0.0_f64, |largest, x| x.abs().max_element().max(largest));
         assert!(largest(&solver.means.residual(&x, &b)) < 1e-12 * largest(&x), "{}", largest(&x));
-        assert!(solver.entries.len() < 24 * (N * N) as usize, "{}", solver.entries.len());
+        assert!(solver.factors.row.len() < 24 * (N * N) as usize, "{}", solver.factors.row.len());
         assert!(Means::new((0..2).map(|_| Vec::new())).factored(&places, &|| false).is_none());
     }
 }

@@ -39,7 +39,7 @@ pub fn map(xyz: &[DVec3], triangles: &[[u32; 3]], border: usize, grid: f64, canc
         if cancel.is_asked() {
             return None;
         }
-        let mut right = [vec![0.0; inner], vec![0.0; inner]];
+        let mut right = vec![DVec2::ZERO; inner];
         let mut rows = Vec::with_capacity(inner);
         for (i, row) in weights.iter().enumerate() {
             let sum: f64 = row.iter().map(|w| w.1).sum();
@@ -48,10 +48,7 @@ pub fn map(xyz: &[DVec3], triangles: &[[u32; 3]], border: usize, grid: f64, canc
                 let weight = weight / sum;
                 match (node as usize).checked_sub(border) {
                     Some(column) => inside.push((column as u32, weight)),
-                    None => {
-                        right[0][i] += weight * uv[node as usize].x / radius;
-                        right[1][i] += weight * uv[node as usize].y / radius;
-                    }
+                    None => right[i] += weight * uv[node as usize] / radius,
                 }
             }
             rows.push(inside);
@@ -61,9 +58,7 @@ pub fn map(xyz: &[DVec3], triangles: &[[u32; 3]], border: usize, grid: f64, canc
             return None;
         }
         let solver = means.factored(&xyz[border..], &|| !cancel.is_asked())?;
-        let [x, y] = right.map(|b| solver.solve(&b));
-        let (x, y) = (x?, y?);
-        uv.extend(x.into_iter().zip(y).map(|(x, y)| DVec2::new(x, y) * radius));
+        uv.extend(solver.solve(&right)?.into_iter().map(|p| p * radius));
     }
     uv.iter_mut().for_each(|p| *p = snapped(*p, grid));
     is_positive(triangles, &uv).then_some(uv)
