@@ -17,7 +17,7 @@ use quadfront::core::fault::Fault;
 use quadfront::core::formats::format::{read_mesh, read_mesh_watched, write_to};
 use quadfront::core::formats::{Format, WriteOptions};
 use quadfront::core::progress::{Cancel, Nobody, Stage, Watch};
-use quadfront::core::soup::MeshFile;
+use quadfront::core::soup::{MeshFile, Weld};
 
 #[global_allocator]
 static MEMORY: PeakAlloc = PeakAlloc;
@@ -59,8 +59,8 @@ fn main() {
         std::fs::write(&path, &bytes).unwrap();
         told(&name, None, &|watch| read_mesh_watched(&path, None, watch).map(drop));
     }
-    told("repair", None, &|watch| repair(&mesh, watch).map(drop));
-    let made = repair(&mesh, &mut Nobody).unwrap().mesh;
+    told("repair", None, &|watch| repair(&mesh, Weld::Auto, watch).map(drop));
+    let made = repair(&mesh, Weld::Auto, &mut Nobody).unwrap().mesh;
     // A disc of a million triangles takes minutes to be laid flat; nobody waits for its end here.
     told("charts", Some(8.0), &|watch| {
         let edges = Edges::unless(&made.triangles, &watch.cancel())?;

@@ -21,7 +21,7 @@ use quadfront::core::formats::{Format, WriteOptions};
 use quadfront::core::progress::Nobody;
 use quadfront::core::record::Export;
 use quadfront::core::soup::soundness::examine;
-use quadfront::core::soup::{Allow, Group, MeshFile};
+use quadfront::core::soup::{Allow, Group, MeshFile, Weld};
 
 /// A plate of `n` by `n` squares of two regions, bent up along a parabola.
 fn plate(n: u32, height: f64) -> MeshFile {
@@ -195,7 +195,7 @@ fn the_texture_of_a_file_lays_its_charts_where_it_is_one_to_one() {
     let n = 24;
     let vertical = |bytes: &[u8], seam: u32| {
         let given = read_bytes("a.obj", bytes, Format::Obj).unwrap();
-        let laid = repair(&given, &mut Nobody).unwrap();
+        let laid = repair(&given, Weld::Auto, &mut Nobody).unwrap();
         let edges = Edges::of(&laid.mesh.triangles);
         let features = features(&laid.mesh, &edges, ANGLE);
         let found = charts(&laid.mesh, &edges, &features, StretchBound::default(), &mut Nobody).unwrap();

@@ -8,8 +8,9 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::Instant;
 
+use glam::DVec3;
 use quadfront::core::formats::Format;
-use quadfront::core::formats::format::read_bytes;
+use quadfront::core::formats::format::{read_bytes, read_mesh};
 use quadfront::core::soup::Allow;
 use quadfront::core::soup::soundness::examine;
 
@@ -361,7 +362,7 @@ fn points_that_are_not_there_or_nowhere_and_meshes_of_nothing() {
         obj.rest = "f 1 2 0\n".to_owned();
         obj
     };
-    hold_for_all("a corner 0", zero, &Refused(&["line 19", "Expected a vertex of the face, found \"0\""]));
+    hold_for_all("a corner 0", zero, &Refused(&["line 19", "A face or line refers to vertex 0 of 9"]));
     let at = |x: f64| {
         move |mut obj: Obj| {
             obj.points[4][0] = x;
@@ -571,4 +572,64 @@ fn files_as_people_have_them_convert_and_what_is_not_read_of_them_is_told() {
         assert_eq!(report["repairs"], serde_json::json!(told), "{name}");
         check(name, folder.path(), &Obj::default());
     }
+}
+
+/// Runs the program on a file of `tests/data`; returns what the report says of it.
+fn reported(folder: &Path, name: &str, options: &[&str]) -> serde_json::Value {
+    let output = Command::new(env!("CARGO_BIN_EXE_quadfront"))
+        .arg("convert")
+        .arg(Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data").join(name))
+        .args(["-o", "quads.msh", "--report", "report.json"])
+        .args(options)
+        .current_dir(folder)
+        .stdin(Stdio::null())
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(0), "{name}: {}", String::from_utf8_lossy(&output.stderr));
+    check(name, folder, &Obj::default());
+    serde_json::from_slice(&std::fs::read(folder.join("report.json")).unwrap()).unwrap()
+}
+
+#[test]
+fn points_that_are_doubled_with_noise_are_joined_unless_they_are_to_be_kept_apart() {
+    let folder = tempfile::tempdir().unwrap();
+    // A grid of 12 x 12 squares of two triangles each, with corners of their own: 864, of which 169 places remain.
+    for (name, told) in [
+        ("o_dup_1e-05.obj", "695 points were joined to others, at most 2.78202e-5 away"),
+        ("o_noisy_dup.obj", "695 points were joined to others, at most 8.94986e-8 away"),
+    ] {
+        for options in [&[][..], &["--weld", "auto"], &["--weld=0.0001"]] {
+            let report = reported(folder.path(), name, options);
+            assert_eq!(report["repairs"], serde_json::json!([told]), "{name} {options:?}");
+            let quads = read_mesh(&folder.path().join("quads.msh"), None).unwrap();
+            let sides = quads.quads.iter().flat_map(|q| (0..4).map(|k| [q[k], q[(k + 1) % 4]]));
+            let mut parts: Vec<u32> = (0..quads.points.len() as u32).collect();
+            let sides: Vec<[u32; 2]> = sides.collect();
+            // Labels spread until nothing changes.
+            while sides.iter().fold(false, |changed, &[a, b]| {
+                let least = parts[a as usize].min(parts[b as usize]);
+                let change = parts[a as usize] != parts[b as usize];
+                (parts[a as usize], parts[b as usize]) = (least, least);
+                changed || change
+            }) {}
+            assert!(parts.iter().all(|&part| part == 0), "{name} {options:?}: one piece");
+        }
+    }
+    let report = reported(folder.path(), "o_dup_1e-05.obj", &["--weld", "0"]);
+    let given =
+        read_mesh(&Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/o_dup_1e-05.obj"), None).unwrap().points;
+    let is_near = |p: &&DVec3| given.iter().filter(|q| q.distance(**p) < 1e-3).count() > 1;
+    let told = format!("{} border points lie on or near elements", given.iter().filter(is_near).count());
+    let repairs = report["repairs"].as_array().unwrap();
+    assert!(repairs.len() == 1 && repairs[0].as_str().unwrap().starts_with(&told), "{repairs:?} and {told}");
+}
+
+#[test]
+fn a_plate_that_stands_on_another_with_other_nodes_is_told_with_its_places() {
+    let folder = tempfile::tempdir().unwrap();
+    let report = reported(folder.path(), "t_junction_nonconf.obj", &[]);
+    let repairs: Vec<&str> = report["repairs"].as_array().unwrap().iter().filter_map(|told| told.as_str()).collect();
+    let told = "6 border points lie on or near elements without being joined to them (nearest 0 away): (0, 0.333333, 0), \
+                (0, 0.666667, 0), (0, 1.33333, 0), ...";
+    assert!(repairs.contains(&told), "{repairs:?}");
 }

@@ -14,7 +14,7 @@ use quadfront::core::discrete::repair::repair;
 use quadfront::core::formats::format::{read_mesh, read_mesh_watched, write_to};
 use quadfront::core::formats::{Format, WriteOptions};
 use quadfront::core::progress::{Cancel, Nobody, Stage, Watch};
-use quadfront::core::soup::MeshFile;
+use quadfront::core::soup::{MeshFile, Weld};
 
 /// Writes down what it is told, and asks for the end as soon as it has been told so much.
 #[derive(Default)]
@@ -139,8 +139,8 @@ fn work_that_is_ended_before_it_begins_does_nothing() {
     let cancel = Cancel::new();
     cancel.ask();
     let mut witness = Witness { cancel, ..Witness::default() };
-    assert!(repair(&plate(4), &mut witness).unwrap_err().is_stop());
-    let mesh = repair(&plate(4), &mut Nobody).unwrap().mesh;
+    assert!(repair(&plate(4), Weld::Auto, &mut witness).unwrap_err().is_stop());
+    let mesh = repair(&plate(4), Weld::Auto, &mut Nobody).unwrap().mesh;
     let edges = Edges::of(&mesh.triangles);
     let found = features(&mesh, &edges, ANGLE);
     let charts = quadfront::core::discrete::chart::charts(&mesh, &edges, &found, Default::default(), &mut witness);

@@ -2,9 +2,9 @@
 
 use clap::Args;
 
-use crate::app::input::{length, mesh_use, unit};
+use crate::app::input::{length, mesh_use, unit, weld};
 use crate::core::case::{ImportOptions, MeshUse};
-use crate::core::soup::Ignored;
+use crate::core::soup::{Ignored, Weld};
 use crate::core::step::{StepOptions, Unit};
 
 /// How a mesh is imported.
@@ -34,6 +34,9 @@ pub(in crate::app) struct MeshArguments {
     /// Keep the shape of borders of MESH: distance of chord and arc, divided by the radius [default: 0.1]
     #[arg(long, value_name = "ERR")]
     chord: Option<f64>,
+    /// Join points of MESH up to this distance; 0: none [default: auto, those far closer than edges are long]
+    #[arg(long, value_name = "DISTANCE|auto", value_parser = weld)]
+    weld: Option<Weld>,
     /// Read MESH as if it had no groups, or not those of these names
     #[arg(long, value_name = "NAME,...", num_args = 0..=1, require_equals = true, default_missing_value = "")]
     ignore_groups: Option<String>,
@@ -69,6 +72,7 @@ impl MeshArguments {
             scale,
             chord,
             ignore_groups,
+            weld: self.weld.unwrap_or_default(),
             step: StepOptions { unit: self.unit, tolerance: self.tolerance, skip_bad_faces: self.skip_bad_faces },
         }
     }
@@ -91,6 +95,10 @@ impl MeshArguments {
             self.ignore_groups.as_ref().map(|names| match names.as_str() {
                 "" => "--ignore-groups".to_owned(),
                 names => format!("--ignore-groups={names}"),
+            }),
+            self.weld.map(|weld| match weld {
+                Weld::Auto => format!("--weld={}", Weld::AUTO),
+                Weld::Within(distance) => format!("--weld={distance}"),
             }),
             self.unit.map(|unit| format!("--unit={}", unit.word())),
             number("tolerance", self.tolerance),

@@ -17,7 +17,7 @@ use crate::app::input;
 pub use crate::core::case::ImportOptions;
 use crate::core::case::{MeshUse, Taking};
 use crate::core::fault::Fault;
-use crate::core::soup::Ignored;
+use crate::core::soup::{Ignored, Weld};
 use crate::core::step::{StepOptions, is_step};
 
 /// How many changes can be undone.
@@ -45,7 +45,7 @@ pub struct Import {
     pub overrides: Overrides,
     preview: Preview,
     /// The options with which the file was read.
-    read_with: (Ignored, StepOptions),
+    read_with: (Ignored, Weld, StepOptions),
     wake: Wake,
     /// The mesh with its repairs, once it has been read.
     pub loaded: Option<Arc<Loaded>>,
@@ -226,8 +226,8 @@ impl Import {
 }
 
 /// The options that a file is read with.
-fn read_with(options: &ImportOptions) -> (Ignored, StepOptions) {
-    (options.ignore_groups.clone(), options.step)
+fn read_with(options: &ImportOptions) -> (Ignored, Weld, StepOptions) {
+    (options.ignore_groups.clone(), options.weld_in_file(), options.step)
 }
 
 #[cfg(test)]

@@ -25,7 +25,7 @@ use crate::core::kernel::predicates::{firm, orient};
 use crate::core::kernel::{LogMetric3, Metric3};
 use crate::core::mesh::{Further, Named, TriangleSet};
 use crate::core::progress::Cancel;
-use crate::core::soup::{MeshFile, Repair};
+use crate::core::soup::{MeshFile, Repair, Weld, nearly_touching};
 
 /// A triangle with a smaller ratio of height to longest side is flat (as in `predicates::firm`).
 const FLAT: f64 = 1e-7;
@@ -66,13 +66,13 @@ impl Imported {
 ///
 /// # Errors
 /// All that the module documentation lists, with the triangles as numbered in the file, and coordinates.
-pub fn import(file: &MeshFile, split_odd: bool) -> Result<Imported, Fault> {
+pub fn import(file: &MeshFile, weld: Weld, split_odd: bool) -> Result<Imported, Fault> {
     let given = file;
     let (cut, file) = cut_to_triangles(file);
     let mut import = Import::checked(given, &file)?;
     Repair::Triangulated.report(cut, &mut import.repairs);
     import.drop_duplicates();
-    import.repair();
+    import.repair(weld);
     import.orient()?;
     import.check_edges()?;
     overlapping(given, &import.points(), &import.triangles, &import.element)?;
@@ -151,7 +151,7 @@ impl<'a> Import<'a> {
         }
         let mut repairs = Vec::new();
         let orphans = used.iter().filter(|u| !**u).count();
-        Repair::UnusedPoint.report(orphans, &mut repairs);
+        Repair::UnusedPoint.report(orphans.saturating_sub(file.joined), &mut repairs);
         let mut import = Import {
             given,
             file,
@@ -227,7 +227,7 @@ impl<'a> Import<'a> {
 
     /// Removes flat triangles, whose corner the neighbour across the longest side receives, and connects hanging nodes
     /// to the sides on which they lie, unless there is a gap. Lines follow the divided sides.
-    fn repair(&mut self) {
+    fn repair(&mut self, weld: Weld) {
         let mut mesh = Triangles {
             points: self.points(),
             triangles: std::mem::take(&mut self.triangles),
@@ -241,7 +241,7 @@ impl<'a> Import<'a> {
             let long = a.distance_squared(b).max(b.distance_squared(c)).max(c.distance_squared(a));
             a != b && b != c && c != a && orient(a, b, c).abs() < FLAT * long
         });
-        let stitched = mesh.stitch(true, &Cancel::default());
+        let stitched = mesh.stitch(true, weld, &Cancel::default());
         Repair::DegenerateTriangle.report(flat, &mut self.repairs);
         Repair::HangingPoint.report(stitched, &mut self.repairs);
         if flat + stitched > 0 && !self.lines.is_empty() {
@@ -249,6 +249,7 @@ impl<'a> Import<'a> {
             segments.sort_unstable();
             self.lines = on_edges(&segments, &mesh, &[]).0.into_iter().map(|([a, b], line)| ((a, b), line)).collect();
         }
+        self.repairs.extend(nearly_touching(&mesh.points, &mesh.triangles, &Cancel::default()));
         (self.triangles, self.region, self.element) = (mesh.triangles, mesh.region, mesh.origin);
     }
 

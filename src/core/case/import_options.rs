@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use super::{Case, DomainSource, MeshSource, MeshUse, VERSION};
 use crate::core::fault::Fault;
-use crate::core::soup::Ignored;
+use crate::core::soup::{Ignored, Weld};
 use crate::core::step::StepOptions;
 
 /// With [`ImportOptions::curvature`], the smallest size is [`ImportOptions::mesh_size`] divided by this.
@@ -32,6 +32,8 @@ pub struct ImportOptions {
     pub chord: Option<f64>,
     /// The groups of the mesh that are ignored.
     pub ignore_groups: Ignored,
+    /// Which points of the mesh are joined.
+    pub weld: Weld,
     /// How a CAD file is read.
     pub step: StepOptions,
 }
@@ -49,6 +51,13 @@ impl ImportOptions {
         line("chart_stretch", number(self.chart_stretch));
         line("scale", number(self.scale));
         line("chord", number(self.chord));
+        line(
+            "weld",
+            match self.weld {
+                Weld::Auto => None,
+                Weld::Within(distance) => Some(format!("{distance:?}")),
+            },
+        );
         line(
             "ignore_groups",
             match &self.ignore_groups {
@@ -71,6 +80,14 @@ impl ImportOptions {
             lines.push(("[[metric]]", metric));
         }
         lines
+    }
+
+    /// Which points are joined, in the unit of the file.
+    pub fn weld_in_file(&self) -> Weld {
+        match self.weld {
+            Weld::Auto => Weld::Auto,
+            Weld::Within(distance) => Weld::Within(distance / self.scale.unwrap_or(1.0)),
+        }
     }
 
     /// The case of a mesh file with these settings. Where there are any, the case has a text with the same settings, so

@@ -177,6 +177,7 @@ impl Case {
             "use",
             "feature_angle",
             "chart_stretch",
+            "weld",
             "scale",
         ])?;
         let word = |key| table.get(key).map(|v| v.text()).transpose();
@@ -305,7 +306,7 @@ fn domain(table: &Table<'_>, folder: &Path) -> Result<DomainSource, Fault> {
         let source = MeshSource::File { path, sol: file("sol")? };
         return Ok(DomainSource::Mesh { source, taking: taking::taking(table)? });
     }
-    for key in ["sol", "use", "feature_angle", "chart_stretch", "scale", "ignore_groups"] {
+    for key in ["sol", "use", "feature_angle", "chart_stretch", "scale", "ignore_groups", "weld"] {
         if let Some(value) = table.get(key) {
             return Err(value.fault(format!("{key} is given without mesh")).remedy("Write mesh = \"...\" too"));
         }

@@ -8,7 +8,7 @@ use crate::core::discrete::StretchBound;
 use crate::core::discrete::features::ANGLE;
 use crate::core::fault::Fault;
 use crate::core::kernel::Metric3;
-use crate::core::soup::{Ignored, MeshFile};
+use crate::core::soup::{Ignored, MeshFile, Weld};
 
 /// Where a mesh is.
 #[derive(Clone, Debug, PartialEq)]
@@ -63,6 +63,8 @@ pub struct Taking {
     pub chart_stretch: f64,
     /// Factor for all coordinates.
     pub scale: f64,
+    /// Which points are joined; a distance is in the unit of the scaled mesh.
+    pub weld: Weld,
 }
 
 impl Taking {
@@ -76,7 +78,13 @@ impl Taking {
 
 impl Default for Taking {
     fn default() -> Self {
-        Taking { used: None, feature_angle: ANGLE, chart_stretch: StretchBound::default().shape, scale: 1.0 }
+        Taking {
+            used: None,
+            feature_angle: ANGLE,
+            chart_stretch: StretchBound::default().shape,
+            scale: 1.0,
+            weld: Weld::Auto,
+        }
     }
 }
 
@@ -129,6 +137,17 @@ pub(super) fn taking(table: &Table<'_>) -> Result<Taking, Fault> {
     taking.feature_angle = degrees.to_radians();
     taking.chart_stretch = between("chart_stretch", taking.chart_stretch, Taking::STRETCHES, "a stretch", "")?;
     taking.scale = between("scale", 1.0, Taking::SCALES, "a factor", "")?;
+    if let Some(value) = table.get("weld") {
+        let wrong = |_| value.wrong("a distance, 0, or \"auto\"", "weld = \"auto\"");
+        taking.weld = match value.text() {
+            Ok(Weld::AUTO) => Weld::Auto,
+            Ok(_) => return Err(wrong(())),
+            Err(_) => match value.number().map_err(|_| wrong(()))? {
+                distance if distance >= 0.0 && distance.is_finite() => Weld::Within(distance),
+                _ => return Err(wrong(())),
+            },
+        };
+    }
     Ok(taking)
 }
 

@@ -10,7 +10,7 @@ use crate::core::fault::Fault;
 use crate::core::kernel::box_tree::extent;
 use crate::core::mesh::Named;
 use crate::core::progress::{Cancel, Stage, Watch};
-use crate::core::soup::{MeshFile, Repair};
+use crate::core::soup::{MeshFile, Repair, Weld, nearly_touching};
 
 /// A triangle whose height is below this fraction of its longest side is degenerate,
 const FLAT: f64 = 1e-6;
@@ -46,7 +46,7 @@ pub struct Repaired {
 /// # Errors
 /// Defects without a safe repair, named by the file's numbers: no triangles; missing points or coordinates out of
 /// range; self-intersecting polygons; one-sided surfaces; overlaps in the plane. [`Fault::stopped`].
-pub fn repair(file: &MeshFile, watch: &mut dyn Watch) -> Result<Repaired, Fault> {
+pub fn repair(file: &MeshFile, weld: Weld, watch: &mut dyn Watch) -> Result<Repaired, Fault> {
     let mut repairs = Vec::new();
     let cancel = watch.cancel();
     let mut begin = |step: u64| {
@@ -60,7 +60,8 @@ pub fn repair(file: &MeshFile, watch: &mut dyn Watch) -> Result<Repaired, Fault>
     Repair::Triangulated.report(cut, &mut repairs);
     let used = used_points(given, &file.triangles, &origin)?;
     crossed(given, &file.triangles, &origin)?;
-    Repair::UnusedPoint.report(used.iter().filter(|used| !**used).count(), &mut repairs);
+    let unused = used.iter().filter(|used| !**used).count();
+    Repair::UnusedPoint.report(unused.saturating_sub(given.joined), &mut repairs);
     let tag = |i: usize| file.triangle_tags.get(i).copied().unwrap_or(0);
     let tags: Vec<u32> = (0..file.triangles.len()).map(tag).collect::<BTreeSet<u32>>().into_iter().collect();
     let regions = tags.iter().map(|&tag| file.region(tag)).collect();
@@ -86,7 +87,7 @@ pub fn repair(file: &MeshFile, watch: &mut dyn Watch) -> Result<Repaired, Fault>
     let welded = mesh.weld(&cancel);
     begin(3)?;
     Repair::MergedPoint.report(welded, &mut repairs);
-    Repair::HangingPoint.report(mesh.stitch(false, &cancel), &mut repairs);
+    Repair::HangingPoint.report(mesh.stitch(false, weld, &cancel), &mut repairs);
     begin(4)?;
     Repair::DuplicateTriangle.report(mesh.remove_duplicates(&cancel), &mut repairs);
     begin(5)?;
@@ -107,6 +108,7 @@ pub fn repair(file: &MeshFile, watch: &mut dyn Watch) -> Result<Repaired, Fault>
         Repair::ReversedTriangle.report(reversed, &mut repairs);
     }
     begin(7)?;
+    repairs.extend(nearly_touching(&mesh.points, &mesh.triangles, &cancel));
     let (copied, separated, pinched) = mesh.separate(&cancel);
     begin(STEPS)?;
     Repair::ContactPoint.report(separated, &mut repairs);
@@ -353,7 +355,7 @@ mod tests {
         for i in (0..given.triangles.len()).step_by(3) {
             given.triangles[i].swap(0, 1);
         }
-        let found = repair(&given, &mut Nobody).unwrap();
+        let found = repair(&given, Weld::Auto, &mut Nobody).unwrap();
         assert_eq!(found.repairs, ["100 triangles were reversed to match neighbours".to_owned()]);
         let edges = Edges::of(&found.mesh.triangles);
         assert!(features(&found.mesh, &edges, 3.2).iter().all(|f| *f != Some(Feature::Conflict)));
@@ -375,7 +377,7 @@ mod tests {
         given.triangles.push([b, c, middle]);
         given.triangles.push([a, middle, c]);
         given.triangles.push([a, a, c]);
-        let found = repair(&given, &mut Nobody).unwrap();
+        let found = repair(&given, Weld::Auto, &mut Nobody).unwrap();
         assert_eq!((found.mesh.triangles.len(), border_edges(&found.mesh)), (10, 8));
         assert!(found.repairs[0].contains("degenerate"), "{:?}", found.repairs);
     }
@@ -386,12 +388,12 @@ mod tests {
         let n = given.triangles.len();
         let [a, b, c] = given.triangles[3];
         given.triangles.push([c, a, b]);
-        assert_eq!(repair(&given, &mut Nobody).unwrap().mesh.triangles.len(), n);
+        assert_eq!(repair(&given, Weld::Auto, &mut Nobody).unwrap().mesh.triangles.len(), n);
         given.triangles.push([0, 1, 999]);
-        assert!(repair(&given, &mut Nobody).unwrap_err().to_string().contains("point 1000"));
+        assert!(repair(&given, Weld::Auto, &mut Nobody).unwrap_err().to_string().contains("point 1000"));
         given.triangles.pop();
         given.points[0].y = f64::NAN;
-        assert!(repair(&given, &mut Nobody).is_err());
-        assert!(repair(&MeshFile::default(), &mut Nobody).is_err());
+        assert!(repair(&given, Weld::Auto, &mut Nobody).is_err());
+        assert!(repair(&MeshFile::default(), Weld::Auto, &mut Nobody).is_err());
     }
 }

@@ -9,14 +9,17 @@ use super::edges::{Edges, Groups, Triangles};
 use crate::core::kernel::DisjointSets;
 use crate::core::kernel::box_tree::extent;
 use crate::core::progress::Cancel;
+use crate::core::soup::Weld;
 use crate::core::soup::weld::weld;
 
 /// Points closer than this fraction of the size of the mesh coincide,
 const COINCIDENT: f64 = 1e-9;
 /// and so do points closer than this fraction of the largest coordinate.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
-/// A point closer to a side than this fraction of the side's length hangs on it.
+/// A point closer to a side than this fraction of the side's length lies on it.
 pub(super) const ON_SIDE: f64 = 1e-6;
+/// Where near points are joined, a point of the border closer to a side of it than this fraction hangs on it.
+const NEAR_SIDE: f64 = 1e-4;
 /// Parts that touch in a point are separated by this fraction of the size, at most by the second fraction of an edge
 /// there.
 const GAP: f64 = 1e-6;
@@ -60,11 +63,12 @@ impl Triangles {
 
     /// Divides border sides at the border points that hang on them, so that the two borders match; returns the number
     /// of points. With `closed`, divides only sides along which other border sides run from end to end.
-    pub fn stitch(&mut self, closed: bool, cancel: &Cancel) -> usize {
+    pub fn stitch(&mut self, closed: bool, weld: Weld, cancel: &Cancel) -> usize {
         let mut stitched = 0;
+        let share = if weld == Weld::Auto { NEAR_SIDE } else { ON_SIDE };
         // Each round divides a triangle at one of its sides.
         for _ in 0..ROUNDS {
-            let hanging = self.hanging(closed, cancel);
+            let hanging = self.hanging(closed, share, cancel);
             if hanging.is_empty() {
                 break;
             }
@@ -96,8 +100,9 @@ impl Triangles {
         stitched
     }
 
-    /// Border points that hang on border sides: the side, the parameter along it, the point; ascending.
-    fn hanging(&self, closed: bool, cancel: &Cancel) -> Vec<(u32, f64, u32)> {
+    /// Border points that hang on border sides, at most the fraction `share` of their length away: the side, the
+    /// parameter along it, the point; ascending.
+    fn hanging(&self, closed: bool, share: f64, cancel: &Cancel) -> Vec<(u32, f64, u32)> {
         let Ok(edges) = Edges::unless(&self.triangles, cancel) else { return Vec::new() };
         let one = |e: usize| <[u32; 1]>::try_from(edges.get(e).sides).ok();
         let sides: Vec<u32> = (0..edges.len()).filter_map(one).flatten().collect();
@@ -110,7 +115,7 @@ impl Triangles {
         for side in sides {
             let [a, b] = self.side(side).map(|k| self.points[k as usize]);
             let along = b - a;
-            let margin = DVec3::splat(ON_SIDE * along.length());
+            let margin = DVec3::splat(share * along.length());
             let (low, high) = (a.min(b) - margin, a.max(b) + margin);
             for place in tree.locate_in_envelope(AABB::from_corners(low.to_array(), high.to_array())) {
                 let p = self.points[place.data as usize] - a;
@@ -204,10 +209,10 @@ mod tests {
     fn hanging_points_are_inserted_into_their_sides() {
         // One border has four sides along the two of the other.
         let mut mesh = beside(plate(4, 0.0), &plate(2, 0.0), DVec3::X);
-        assert_eq!((mesh.weld(&Cancel::default()), mesh.stitch(false, &Cancel::default())), (3, 2));
+        assert_eq!((mesh.weld(&Cancel::default()), mesh.stitch(false, Weld::Auto, &Cancel::default())), (3, 2));
         assert_eq!(border_edges(&mesh), 16 + 8 - 4 - 2);
         let area: f64 = (0..mesh.triangles.len()).map(|t| 0.5 * mesh.area_vector(t).length()).sum();
-        assert!((area - 2.0).abs() < 1e-12 && mesh.stitch(false, &Cancel::default()) == 0);
+        assert!((area - 2.0).abs() < 1e-12 && mesh.stitch(false, Weld::Auto, &Cancel::default()) == 0);
     }
 
     #[test]

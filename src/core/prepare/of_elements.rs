@@ -9,7 +9,7 @@ use crate::core::fault::Fault;
 use crate::core::kernel::predicates::convex;
 use crate::core::mesh::{ElementId, Mesh, Names, NewElement};
 use crate::core::metric::{Field, MetricSource, Sizing};
-use crate::core::soup::MeshFile;
+use crate::core::soup::{MeshFile, Weld};
 
 /// The mesh in a case file, unchanged: nodes keep their numbers, and its quadrilaterals exist from the start.
 pub(super) fn from_elements(
@@ -35,7 +35,7 @@ pub(super) fn from_elements(
         triangles: triangles.iter().copied().chain(halves).collect(),
         ..MeshFile::default()
     };
-    let imported = import(&file, false)?;
+    let imported = import(&file, Weld::Within(0.0), false)?;
     if let Some(repair) = imported.repairs.first() {
         return Err(Fault::new(format!("The background needs a repair: {repair}"))
             .remedy("Correct it: a mesh in a case file is not repaired"));

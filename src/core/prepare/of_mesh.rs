@@ -43,11 +43,13 @@ pub(super) fn from_mesh(
     };
     taking.scale(&mut file);
     file.ignore_groups(&case.ignore_groups).map_err(|fault| fault.at(place.clone()))?;
+    let mut told = Vec::from_iter(file.join_near(taking.weld, &watch.cancel()));
+    told.append(&mut file.not_read());
     if !file.is_plane() || taking.used == Some(MeshUse::Shape) {
-        return from_surface(case, &file, &place, taking, watch);
+        return from_surface(case, &file, &place, taking, told, watch);
     }
-    let mut imported = import(&file, case.split_odd).map_err(|fault| fault.at(place.clone()))?;
-    imported.repairs.append(&mut file.not_read());
+    let mut imported = import(&file, taking.weld, case.split_odd).map_err(|fault| fault.at(place.clone()))?;
+    imported.repairs.append(&mut told);
     let set = &imported.set;
     allow_triangles(set.triangles.len(), watch)?;
     let mut fields = Vec::new();
@@ -85,17 +87,20 @@ pub(super) fn from_mesh(
 }
 
 /// A mesh as a surface without CAD: its shape remeshed, or its own triangles, chart by chart. Sizes are those of the
-/// case's fields; without fields, those given at its points or implied by its triangles. `place` is the file's name.
+/// case's fields; without fields, those given at its points or implied by its triangles. `place` is the file's name;
+/// `told` comes after the repairs.
 fn from_surface(
     case: &Case,
     file: &MeshFile,
     place: &str,
     taking: &Taking,
+    mut told: Vec<String>,
     watch: &mut dyn Watch,
 ) -> Result<Background, Fault> {
     // Faults of the case's fields have their own place.
     let here = |fault: Fault| if fault.is_stop() { fault } else { fault.at(place) };
-    let Repaired { mesh, copied, regions, lines, points, mut repairs } = repair(file, watch).map_err(here)?;
+    let Repaired { mesh, copied, regions, lines, points, mut repairs } =
+        repair(file, taking.weld, watch).map_err(here)?;
     let surface = surface(&mesh, &regions, taking.feature_angle, taking.bound(), watch).map_err(here)?;
     let converts = taking.used == Some(MeshUse::Triangles);
     let mut fields = Vec::new();
@@ -134,7 +139,7 @@ fn from_surface(
     made.names.further.lines = file.further_lines();
     made.names.further.faces = further;
     repairs.append(&mut made.repairs);
-    repairs.append(&mut file.not_read());
+    repairs.append(&mut told);
     Ok(Background { repairs, ..made })
 }
 

@@ -10,7 +10,7 @@ use super::search::Search;
 use crate::core::fault::Fault;
 
 /// Keys of a case that have a default.
-pub(super) const OPTIONS: [&str; 12] = [
+pub(super) const OPTIONS: [&str; 13] = [
     "gradation",
     "corner_angle",
     "tolerance",
@@ -22,6 +22,7 @@ pub(super) const OPTIONS: [&str; 12] = [
     "use",
     "feature_angle",
     "chart_stretch",
+    "weld",
     "scale",
 ];
 

@@ -103,6 +103,8 @@ pub struct MeshFile {
     pub omitted: Vec<Omitted>,
     /// How the file numbers its points and elements.
     pub counting: Counting,
+    /// Points that no element has since others close by are its corners instead.
+    pub joined: usize,
 }
 
 /// Texture coordinates of the corners of elements, as indices into `uv`: a point has one for each side of a seam.

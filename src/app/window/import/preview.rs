@@ -206,8 +206,10 @@ fn load(path: &Path, options: &ImportOptions, voice: &mut Voice) -> Result<Loade
     let place = |fault: Fault| if fault.is_stop() { fault } else { fault.at(path.display().to_string()) };
     file.ignore_groups(ignored).map_err(place)?;
     let (is_plane, has_metric, has_groups) = (file.is_plane(), file.metric.is_some(), !file.groups.is_empty());
-    let mut not_read = file.not_read();
-    let (mut found, fault) = match repair(&file, voice) {
+    let weld = options.weld_in_file();
+    let mut told_of_file = Vec::from_iter(file.join_near(weld, &voice.cancel()));
+    told_of_file.append(&mut file.not_read());
+    let (mut found, fault) = match repair(&file, weld, voice) {
         Ok(found) => (found, None),
         Err(fault) if fault.is_stop() => return Err(fault),
         Err(fault) => {
@@ -221,7 +223,7 @@ fn load(path: &Path, options: &ImportOptions, voice: &mut Voice) -> Result<Loade
         }
     };
     drop(file);
-    found.repairs.append(&mut not_read);
+    found.repairs.append(&mut told_of_file);
     let part = part.map(|(facts, told)| {
         found.repairs = told;
         facts

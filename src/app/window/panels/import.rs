@@ -6,11 +6,12 @@ use eframe::egui::{
 };
 
 mod part;
+mod reading;
 
 use super::{choice, heading, inset, line, note, on_click};
 use crate::app::window::command::Command;
 use crate::app::window::icons;
-use crate::app::window::import::{Gesture, Import, ImportOptions, KINDS, Shown, UNITS};
+use crate::app::window::import::{Gesture, Import, ImportOptions, KINDS, Shown};
 use crate::app::window::state::{Progress, State};
 use crate::app::window::theme::{self, ink};
 use crate::app::window::words;
@@ -29,8 +30,6 @@ const NAMES: f32 = 92.0;
 const REMESH: &str = "remesh its shape";
 const TRIANGLES: &str = "convert its triangles";
 const SPLIT_ODD: &str = "divide a side of odd borders";
-/// The name of the permission to ignore groups.
-const IGNORE_GROUPS: &str = "ignore";
 /// The first chord error when the user asks for sizes by curvature: the distance of a chord from its arc, over the
 /// radius.
 const CHORD: f64 = 0.01;
@@ -160,12 +159,13 @@ fn form(ui: &mut Ui, import: &Import, commands: &mut Vec<Command>, palette: &Pal
 /// The options of a mesh.
 fn form_of_mesh(ui: &mut Ui, options: &mut ImportOptions, import: &Import, dragging: &mut bool, palette: &Palette) {
     let taking = import.taking();
-    unit(ui, options, &taking, dragging, palette);
+    reading::unit(ui, options, &taking, dragging, palette);
     // Once groups are ignored, the mesh has none.
     let has_groups = import.loaded.as_ref().is_some_and(|loaded| loaded.has_groups);
     if has_groups || options.ignore_groups != Ignored::Nothing {
-        groups(ui, options, palette);
+        reading::groups(ui, options, palette);
     }
+    reading::near(ui, options, import, dragging, palette);
     used(ui, options, import, palette);
     sizes(ui, options, import, dragging, palette);
     let charted = import.has_charts();
@@ -217,44 +217,6 @@ fn hundredths(value: f64) -> f64 {
 /// A default needs no option.
 fn unless_default(value: f64, default: f64) -> Option<f64> {
     (value != default).then_some(value)
-}
-
-fn unit(ui: &mut Ui, options: &mut ImportOptions, taking: &Taking, dragging: &mut bool, palette: &Palette) {
-    let mut scale = taking.scale;
-    row(ui, "unit", "The unit of lengths after scaling (--scale)", palette, |ui| {
-        // The conversions that users think of; some have the same scale.
-        let mut known: Vec<(f64, String)> = vec![(1.0, "as in the file".to_owned())];
-        for (to, metres) in [UNITS[2], UNITS[0]] {
-            let others = UNITS.iter().filter(|unit| unit.0 != to);
-            known.extend(others.map(|&(from, own)| (rounded(own / metres), format!("{from} to {to}"))));
-        }
-        let now = known.iter().find(|unit| unit.0 == scale).map_or("other", |unit| unit.1.as_str()).to_owned();
-        choice(ui, "Unit", 112.0, now, &mut scale, known);
-        ui.label(note("×", palette));
-        let speed = 0.01 * scale;
-        *dragging |= number(ui, &mut scale, Taking::SCALES, speed, "", "Scale").dragged();
-    });
-    if scale != taking.scale {
-        options.scale = unless_default(scale, 1.0);
-        // Sizes are in the scaled unit.
-        options.mesh_size = options.mesh_size.map(|size| rounded(size * scale / taking.scale));
-    }
-}
-
-fn groups(ui: &mut Ui, options: &mut ImportOptions, palette: &Palette) {
-    let tip = "Read the mesh as if it had no groups, so that none divides it (--ignore-groups)";
-    row(ui, "groups", tip, palette, |ui| {
-        let before = options.ignore_groups == Ignored::All;
-        let mut all = before;
-        ui.checkbox(&mut all, IGNORE_GROUPS).on_hover_text(tip);
-        if all != before {
-            options.ignore_groups = if all { Ignored::All } else { Ignored::Nothing };
-        }
-        // Some of them are named on the command line.
-        if let Ignored::Named(names) = &options.ignore_groups {
-            ui.add(egui::Label::new(note(format!("without {}", names.join(", ")), palette)).truncate());
-        }
-    });
 }
 
 /// Rounds to twelve digits, as a person would write the number.

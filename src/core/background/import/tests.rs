@@ -20,6 +20,11 @@ fn mesh(points: &[(f64, f64)], triangles: &[[u32; 3]]) -> MeshFile {
     }
 }
 
+/// The import where near points are joined.
+fn import(file: &MeshFile, split_odd: bool) -> Result<Imported, Fault> {
+    super::import(file, Weld::Auto, split_odd)
+}
+
 /// A square of four triangles around its centre, node 4.
 fn star() -> MeshFile {
     mesh(&[(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0), (0.5, 0.5)], &[[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]])
