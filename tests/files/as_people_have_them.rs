@@ -240,6 +240,127 @@ fn a_binary_ply_whose_header_ends_with_cr_alone_keeps_its_first_byte() {
 }
 
 #[test]
+fn elements_of_higher_order_are_read_by_their_corners_in_every_format() {
+    // Two triangles and a quadrilateral of order 2 or 3 along a strip, a line, and their nodes in any order: corners
+    // first, then what lies between them. The nodes are numbered by the format.
+    let at = |x: f64, y: f64| DVec2::new(x, y);
+    let corners = [at(0.0, 0.0), at(2.0, 0.0), at(2.0, 2.0), at(0.0, 2.0), at(4.0, 0.0), at(4.0, 2.0)];
+    let elements: [&[usize]; 4] = [&[0, 1, 2], &[0, 2, 3], &[1, 4, 5, 2], &[0, 1]];
+    // Nodes between the ends of each side, and inside: for triangles, quadrilaterals and lines.
+    let orders: [(usize, [usize; 3]); 3] = [(1, [0, 0, 0]), (1, [0, 1, 0]), (2, [1, 4, 0])];
+    for (order, (between, inside)) in orders.into_iter().enumerate() {
+        let mut points = corners.to_vec();
+        let mut nodes: Vec<Vec<usize>> = Vec::new();
+        for element in elements {
+            let closed = element.len() > 2;
+            let mut of_element = element.to_vec();
+            for k in 0..if closed { element.len() } else { 1 } {
+                let (from, to) = (corners[element[k]], corners[element[(k + 1) % element.len()]]);
+                for i in 1..=between {
+                    let p = from.lerp(to, i as f64 / (between + 1) as f64);
+                    // Neighbours share the nodes of their side.
+                    let known = points.iter().position(|q| q.distance(p) < 1e-9);
+                    of_element.push(known.unwrap_or(points.len()));
+                    if known.is_none() {
+                        points.push(p);
+                    }
+                }
+            }
+            let middle = element.iter().map(|&k| corners[k]).sum::<DVec2>() / element.len() as f64;
+            for _ in 0..inside[if closed { element.len() - 3 } else { 2 }] {
+                of_element.push(points.len());
+                points.push(middle);
+            }
+            nodes.push(of_element);
+        }
+        let list = |element: &[usize], first: usize| {
+            element.iter().map(|k| (k + first).to_string()).collect::<Vec<_>>().join(" ")
+        };
+        let is_quad = |k: &usize| *k == 2;
+        // The types of lines, triangles and quadrilaterals.
+        let msh = [[8, 9, 16], [8, 9, 10], [26, 21, 36]][order];
+        let vtu = [[21, 22, 23], [21, 22, 28], [35, 69, 70]][order];
+        let kind = |types: [i32; 3], k: usize| if k == 3 { types[0] } else { types[1 + usize::from(is_quad(&k))] };
+        let mut texts = Vec::new();
+        let mut text = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$ParametricNodes\n".to_owned();
+        writeln!(text, "{}", points.len()).unwrap();
+        for (k, p) in points.iter().enumerate() {
+            // On a vertex, a curve and a surface there are no, one and two parameters.
+            writeln!(text, "{} {} {} 0 {} 1{}", k + 7, p.x, p.y, k % 3, " 0.5".repeat(k % 3)).unwrap();
+        }
+        text += "$EndParametricNodes\n$Elements\n4\n";
+        for (k, element) in nodes.iter().enumerate() {
+            writeln!(text, "{} {} 2 {} 1 {}", k + 1, kind(msh, k), 1 + k % 2, list(element, 7)).unwrap();
+        }
+        texts.push((Format::Msh, text + "$EndElements\n"));
+        let mut text =
+            format!("$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Nodes\n1 {n} 1 {n}\n2 1 0 {n}\n", n = points.len());
+        (0..points.len()).for_each(|k| writeln!(text, "{}", k + 1).unwrap());
+        points.iter().for_each(|p| writeln!(text, "{} {} 0", p.x, p.y).unwrap());
+        text += "$EndNodes\n$Elements\n4 4 1 4\n";
+        for (k, element) in nodes.iter().enumerate() {
+            let dimension = if k == 3 { 1 } else { 2 };
+            writeln!(text, "{dimension} 1 {} 1\n{} {}", kind(msh, k), k + 1, list(element, 1)).unwrap();
+        }
+        texts.push((Format::Msh, text + "$EndElements\n"));
+        let array = |name: &str, kind: &str, values: String| {
+            format!("<DataArray type=\"{kind}\" Name=\"{name}\" format=\"ascii\">{values}</DataArray>")
+        };
+        let mut end = 0;
+        let offsets: Vec<String> = nodes
+            .iter()
+            .map(|element| {
+                end += element.len();
+                end.to_string()
+            })
+            .collect();
+        let coordinates: Vec<String> = points.iter().map(|p| format!("{} {} 0", p.x, p.y)).collect();
+        let heat: Vec<String> = points.iter().map(|p| (10.0 * p.x).to_string()).collect();
+        texts.push((
+            Format::Vtu,
+            format!(
+                "<VTKFile type=\"UnstructuredGrid\"><UnstructuredGrid><Piece><Points><DataArray type=\"Float64\" \
+             NumberOfComponents=\"3\" format=\"ascii\">{}</DataArray></Points><PointData>{}</PointData><Cells>{}{}{}\
+             </Cells></Piece></UnstructuredGrid></VTKFile>",
+                coordinates.join(" "),
+                array("heat", "Float64", heat.join(" ")),
+                array(
+                    "connectivity",
+                    "Int64",
+                    nodes.iter().map(|element| list(element, 0)).collect::<Vec<_>>().join(" ")
+                ),
+                array("offsets", "Int64", offsets.join(" ")),
+                array("types", "UInt8", (0..4).map(|k| kind(vtu, k).to_string()).collect::<Vec<_>>().join(" ")),
+            ),
+        ));
+        if order > 0 {
+            let n = if order == 1 { 2 } else { 3 };
+            let mut text = format!("MeshVersionFormatted 2\nDimension 2\nVertices\n{}\n", points.len());
+            points.iter().for_each(|p| writeln!(text, "{} {} 0", p.x, p.y).unwrap());
+            for (name, of) in
+                [(format!("EdgesP{n}"), 3..4), (format!("TrianglesP{n}"), 0..2), (format!("QuadrilateralsQ{n}"), 2..3)]
+            {
+                writeln!(text, "{name}\n{}", of.len()).unwrap();
+                of.for_each(|k| writeln!(text, "{} 5", list(&nodes[k], 1)).unwrap());
+            }
+            texts.push((Format::Medit, text + "End\n"));
+        }
+        for (format, text) in texts {
+            let mesh = read_bytes("a", text.as_bytes(), format)
+                .unwrap_or_else(|fault| panic!("{format:?} {order}: {fault}\n{text}"));
+            assert_eq!(mesh.points.iter().map(|p| p.truncate()).collect::<Vec<_>>(), corners, "{format:?} {order}");
+            assert_eq!((&mesh.lines[..], &mesh.triangles[..]), (&[[0, 1]][..], &[[0, 1, 2], [0, 2, 3]][..]));
+            assert_eq!(mesh.quads, [[1, 4, 5, 2]]);
+            let told = format!("not read: mid-side node of an element of higher order ({} times)", points.len() - 6);
+            assert!(mesh.not_read().contains(&told), "{format:?} {order}: {:?}", mesh.not_read());
+            for data in &mesh.point_data {
+                assert_eq!(data.values, corners.map(|p| 10.0 * p.x), "{format:?} {order}");
+            }
+        }
+    }
+}
+
+#[test]
 fn elements_of_order_2_are_read_by_their_corners_and_their_other_nodes_are_told() {
     let nodes = "*NODE, NSET=ALL\n1, 0, 0\n2, 2, 0\n3, 2, 2\n4, 0, 2\n5, 4, 0\n6, 4, 2\n10, 1, 0\n11, 2, 1\n12, 1, 1\n\
                  13, 3, 0\n14, 4, 1\n15, 3, 2\n16, 0, 1\n17, 1, 2\n";
@@ -263,8 +384,8 @@ fn elements_of_order_2_are_read_by_their_corners_and_their_other_nodes_are_told(
             mesh.not_read(),
             [
                 "not read: element C3D10 (2 times)",
-                "not read: mid-side node of an element of order 2 (8 times)",
-                "not read: node set ALL"
+                "not read: node set ALL",
+                "not read: mid-side node of an element of higher order (8 times)"
             ]
         );
     }

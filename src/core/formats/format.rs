@@ -121,6 +121,7 @@ pub fn read_mesh_watched(path: &Path, sol: Option<&Path>, watch: &mut dyn Watch)
         let metric = medit::read_metric_watched(&sol.display().to_string(), &bytes, mesh.points.len(), &pace);
         mesh.metric = Some(metric.map_err(|fault| fault.of_kind(FaultKind::Syntax))?);
     }
+    mesh.drop_middles();
     Ok(mesh)
 }
 
@@ -129,7 +130,9 @@ pub fn read_mesh_watched(path: &Path, sol: Option<&Path>, watch: &mut dyn Watch)
 /// # Errors
 /// A fault with name, line and remedy.
 pub fn read_bytes(name: &str, bytes: &[u8], format: Format) -> Result<MeshFile, Fault> {
-    read_in(name, bytes, format, None, &Reading::watched(&mut Nobody))
+    let mut mesh = read_in(name, bytes, format, None, &Reading::watched(&mut Nobody))?;
+    mesh.drop_middles();
+    Ok(mesh)
 }
 
 /// As [`read_bytes`]; `folder` holds the files that the mesh refers to.

@@ -51,9 +51,25 @@ pub fn read(name: &str, bytes: &[u8], pace: &dyn Pace) -> Result<MeshFile, Fault
                     required.push(vertex(&mut s, &mut largest)?);
                 }
             }
-            b"Edges" => elements(&mut s, &mut mesh.lines, &mut mesh.line_tags, &mut largest)?,
-            b"Triangles" => elements(&mut s, &mut mesh.triangles, &mut mesh.triangle_tags, &mut largest)?,
-            b"Quadrilaterals" => elements(&mut s, &mut mesh.quads, &mut mesh.quad_tags, &mut largest)?,
+            b"Edges" | b"EdgesP2" | b"EdgesP3" => {
+                let others = [0, 1, 2][order(word) - 1];
+                elements(&mut s, &mut mesh.lines, &mut mesh.line_tags, others, &mut mesh.middles, &mut largest)?;
+            }
+            b"Triangles" | b"TrianglesP2" | b"TrianglesP3" => {
+                let others = [0, 3, 7][order(word) - 1];
+                elements(
+                    &mut s,
+                    &mut mesh.triangles,
+                    &mut mesh.triangle_tags,
+                    others,
+                    &mut mesh.middles,
+                    &mut largest,
+                )?;
+            }
+            b"Quadrilaterals" | b"QuadrilateralsQ2" | b"QuadrilateralsQ3" => {
+                let others = [0, 5, 12][order(word) - 1];
+                elements(&mut s, &mut mesh.quads, &mut mesh.quad_tags, others, &mut mesh.middles, &mut largest)?;
+            }
             b"Tetrahedra" | b"Hexahedra" | b"Prisms" | b"Pyramids" => {
                 let name = match word {
                     b"Tetrahedra" => "tetrahedron",
@@ -68,12 +84,6 @@ pub fn read(name: &str, bytes: &[u8], pace: &dyn Pace) -> Result<MeshFile, Fault
                 to_keyword(&mut s);
             }
             _ if word[0].is_ascii_alphabetic() => {
-                let higher = [&b"P2"[..], b"Q2", b"P3", b"Q3", b"P4", b"Q4"].iter().any(|order| word.ends_with(order));
-                if higher && [&b"Edges"[..], b"Triangles", b"Quadri"].iter().any(|kind| word.starts_with(kind)) {
-                    return Err(s
-                        .fault(format!("Elements of higher order ({}) are not supported", shown(word)))
-                        .remedy("Save the mesh with elements of order 1"));
-                }
                 mesh.omit("section", &shown(word));
                 to_keyword(&mut s);
             }
@@ -122,10 +132,22 @@ fn to_keyword(s: &mut Scanner) {
     }
 }
 
+/// The order of the elements of a section, by the end of its name.
+fn order(section: &[u8]) -> usize {
+    match section.last() {
+        Some(b'2') => 2,
+        Some(b'3') => 3,
+        _ => 1,
+    }
+}
+
+/// Reads elements with `others` nodes after their corners, which become `middles`.
 fn elements<const N: usize>(
     s: &mut Scanner,
     list: &mut Vec<[u32; N]>,
     tags: &mut Vec<u32>,
+    others: usize,
+    middles: &mut Vec<u32>,
     largest: &mut (usize, usize),
 ) -> Result<(), Fault> {
     let count = s.count("a number of elements", 2 * N + 2)?;
@@ -135,6 +157,9 @@ fn elements<const N: usize>(
         let mut corners = [0; N];
         for corner in &mut corners {
             *corner = vertex(s, largest)?;
+        }
+        for _ in 0..others {
+            middles.push(vertex(s, largest)?);
         }
         list.push(corners);
         let tag = s.integer("a reference")?;

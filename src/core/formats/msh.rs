@@ -1,7 +1,7 @@
 //! Gmsh's MSH format, versions 2.2 and 4.1.
 //!
-//! Reads text and binary of either byte order; writes text. Deliberately absent: partitions, periodicity, elements of
-//! higher order (rejected), volume elements (counted in [`MeshFile::skipped`]).
+//! Reads text and binary of either byte order; writes text. Of elements of higher order the corners are read.
+//! Deliberately absent: partitions, periodicity, volume elements (counted in [`MeshFile::skipped`]).
 //!
 //! [`MeshFile::skipped`]: crate::core::soup::MeshFile::skipped
 
@@ -24,8 +24,8 @@ enum Shape {
     Line,
     Triangle,
     Quad,
-    /// A line or surface element with nodes other than its corners.
-    HigherOrder,
+    /// A line or surface element of higher order: the element of its corners, which come first, and its further nodes.
+    HigherOrder(i64, usize),
     /// A volume element: name and number of nodes.
     Volume(&'static str, usize),
 }
@@ -38,6 +38,29 @@ const VOLUMES: [(&str, [(i64, usize); 5]); 4] = [
     ("pyramid", [(7, 5), (14, 14), (19, 13), (118, 30), (119, 55)]),
 ];
 
+/// Elements of higher order: the type, that of the element of their corners, and the number of their further nodes.
+const HIGHER: [(i64, i64, usize); 19] = [
+    (8, 1, 1),
+    (26, 1, 2),
+    (27, 1, 3),
+    (28, 1, 4),
+    (9, 2, 3),
+    (20, 2, 6),
+    (21, 2, 7),
+    (22, 2, 9),
+    (23, 2, 12),
+    (24, 2, 12),
+    (25, 2, 18),
+    (16, 3, 4),
+    (10, 3, 5),
+    (36, 3, 12),
+    (37, 3, 21),
+    (38, 3, 32),
+    (39, 3, 8),
+    (40, 3, 12),
+    (41, 3, 16),
+];
+
 /// Gmsh's table of element types.
 fn shape(kind: i64) -> Option<Shape> {
     Some(match kind {
@@ -45,8 +68,10 @@ fn shape(kind: i64) -> Option<Shape> {
         2 => Shape::Triangle,
         3 => Shape::Quad,
         15 => Shape::Point,
-        8 | 9 | 10 | 16 | 20..=28 | 36..=62 => Shape::HigherOrder,
         _ => {
+            if let Some(&(_, corners, others)) = HIGHER.iter().find(|higher| higher.0 == kind) {
+                return Some(Shape::HigherOrder(corners, others));
+            }
             let of_kind = |&(name, kinds): &(&'static str, [(i64, usize); 5])| {
                 Some(Shape::Volume(name, kinds.iter().find(|(known, _)| *known == kind)?.1))
             };

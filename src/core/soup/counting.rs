@@ -85,6 +85,14 @@ impl Count {
         }
     }
 
+    /// Removes the numbers of the items that are gone.
+    pub(super) fn keep(&mut self, gone: &[bool]) {
+        if !matches!(self, Count::Nothing) {
+            let left = (0..gone.len()).filter(|&item| !gone[item]).filter_map(|item| self.number(item));
+            *self = Count::of(&left.collect::<Vec<_>>());
+        }
+    }
+
     pub(super) fn number(&self, index: usize) -> Option<u64> {
         match self {
             Count::From(first) => first.checked_add(index as u64),

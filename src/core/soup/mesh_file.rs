@@ -101,6 +101,8 @@ pub struct MeshFile {
     pub skipped: Vec<(String, usize)>,
     /// What else of the file is not read.
     pub omitted: Vec<Omitted>,
+    /// Points of elements of higher order that are not their corners. Readers of files leave none, and tell of them.
+    pub middles: Vec<u32>,
     /// How the file numbers its points and elements.
     pub counting: Counting,
     /// Points that no element has since others close by are its corners instead.

@@ -7,6 +7,7 @@ pub(in crate::core) mod groups;
 mod in_memory;
 mod polygons;
 mod near;
+mod middles;
 pub(in crate::core) mod weld;
 pub mod soundness;
 mod repairs;

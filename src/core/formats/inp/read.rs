@@ -22,7 +22,7 @@ struct Shape {
     corners: &'static [usize],
 }
 
-/// The shape of an Abaqus element type; `None` for one that is not read. Of elements of order 2, the corners come
+/// The shape of an Abaqus element type; `None` for one that is not read. Of elements of higher order, the corners come
 /// first; of lines, the node in the middle is the second one.
 fn shape_of(kind: &str) -> Option<Shape> {
     let shells = ["STRI", "S", "CPS", "CPE", "CPEG", "CAX", "M3D", "R3D", "SFM3D", "DS", "DC2D"];
@@ -88,8 +88,8 @@ struct Run {
 
 /// Reads nodes and elements, sorted by their numbers. Element sets become groups: where those with sections of
 /// properties cover all elements, they are the regions; else all that do not overlap (`soup::groups`), if the sets
-/// cover all elements. Edge surfaces become groups of lines. Of elements of order 2, the corners are read. Node sets,
-/// parts and everything else are ignored, and told as not read.
+/// cover all elements. Edge surfaces become groups of lines. Of elements of higher order, the corners are read. Node
+/// sets, parts and everything else are ignored, and told as not read.
 ///
 /// # Errors
 /// With the line: a malformed node or element, or a node number that is used twice.
@@ -101,8 +101,6 @@ pub fn read(name: &str, bytes: &[u8], pace: &dyn Pace) -> Result<MeshFile, Fault
     let mut skipped: BTreeMap<String, usize> = BTreeMap::new();
     let mut section = Section::Other;
     let mut sets = Sets::default();
-    // Nodes of elements of order 2 that are not their corners.
-    let mut middles: Vec<u32> = Vec::new();
     let mut any = false;
     // Whether the previous data line goes on.
     let mut goes_on = false;
@@ -152,7 +150,7 @@ pub fn read(name: &str, bytes: &[u8], pace: &dyn Pace) -> Result<MeshFile, Fault
                     })?;
                 }
                 let others = (0..shape.nodes).filter(|place| !shape.corners.contains(place));
-                middles.extend(others.map(|place| of_element[place]));
+                mesh.middles.extend(others.map(|place| of_element[place]));
                 match *shape.corners {
                     [a, b] => mesh.lines.push([a, b].map(|place| of_element[place])),
                     [a, b, c] => {
@@ -206,9 +204,6 @@ pub fn read(name: &str, bytes: &[u8], pace: &dyn Pace) -> Result<MeshFile, Fault
     if nodes.is_none() {
         number(&s, &mut node_numbers, &mut mesh.points)?;
     }
-    if !middles.is_empty() {
-        drop_middles(&mut mesh, &mut node_numbers, &middles);
-    }
     sort_by_number(&mut triangle_numbers, &mut mesh.triangles, &mut []);
     sort_by_number(&mut quad_numbers, &mut mesh.quads, &mut []);
     mesh.counting.shared = true;
@@ -239,28 +234,6 @@ fn continued<'a>(s: &mut Scanner<'a>, line: &'a [u8], is_part: impl Fn(&[u8], &[
         *s = ahead;
     }
     whole
-}
-
-/// Removes the nodes of elements of order 2 that are no corners of any element, and tells of them.
-fn drop_middles(mesh: &mut MeshFile, numbers: &mut Vec<u64>, middles: &[u32]) {
-    let mut is_middle = vec![false; mesh.points.len()];
-    middles.iter().for_each(|&node| is_middle[node as usize] = true);
-    let corners = |mesh: &mut MeshFile, visit: &mut dyn FnMut(&mut u32)| {
-        mesh.lines.as_flattened_mut().iter_mut().for_each(&mut *visit);
-        mesh.triangles.as_flattened_mut().iter_mut().for_each(&mut *visit);
-        mesh.quads.as_flattened_mut().iter_mut().for_each(visit);
-    };
-    corners(mesh, &mut |node| is_middle[*node as usize] = false);
-    let mut next = 0..;
-    let index: Vec<u32> = is_middle.iter().map(|&gone| if gone { 0 } else { next.next().unwrap_or(0) }).collect();
-    corners(mesh, &mut |node| *node = index[*node as usize]);
-    let (mut of_point, mut of_number) = (is_middle.iter(), is_middle.iter());
-    mesh.points.retain(|_| of_point.next() == Some(&false));
-    numbers.retain(|_| of_number.next() == Some(&false));
-    let dropped = is_middle.len() - mesh.points.len();
-    if dropped > 0 {
-        mesh.omit_many("mid-side node", "of an element of order 2", dropped);
-    }
 }
 
 impl Sets {

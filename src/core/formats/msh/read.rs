@@ -98,10 +98,13 @@ impl Reader<'_> {
         match (section, version) {
             (b"PhysicalNames", _) => self.physical_names()?,
             (b"Entities", Version::Four) => self.entities()?,
-            (b"Nodes", _) => self.nodes(version)?,
+            (b"Nodes", _) => self.nodes(version, false)?,
             (b"Elements", _) => self.elements(version)?,
+            (b"ParametricNodes", Version::Two) if self.input.binary.is_none() => {
+                self.nodes(version, true)?;
+            }
             (b"ParametricNodes", _) => {
-                let fault = self.fault("Nodes with parametric coordinates are not supported in this version");
+                let fault = self.fault("Binary nodes with parametric coordinates are not supported in this version");
                 return Err(fault.remedy("Save it without them (in Gmsh: Mesh.SaveParametric = 0), or as MSH 4.1"));
             }
             (b"NodeData" | b"ElementData", _) if self.has_elements => return self.data(section),
@@ -223,7 +226,7 @@ impl Reader<'_> {
         Ok(())
     }
 
-    fn nodes(&mut self, version: Version) -> Result<(), Fault> {
+    fn nodes(&mut self, version: Version, parametric: bool) -> Result<(), Fault> {
         let start = self.input.scanner.mark();
         if self.nodes.is_some() {
             return Err(self.fault("There are two sections $Nodes").remedy("Save it unpartitioned, as one mesh"));
@@ -237,6 +240,10 @@ impl Reader<'_> {
                 for _ in 0..count {
                     numbers.push(self.input.tag("the number of a node")?);
                     self.point()?;
+                    if parametric {
+                        // The entity on which it lies, and its coordinates there.
+                        self.input.scanner.line();
+                    }
                 }
             }
             Version::Four => {
@@ -418,10 +425,12 @@ impl Reader<'_> {
                     self.numbers[2].push(number);
                 }
             }
-            Shape::HigherOrder => {
-                return Err(self
-                    .fault(format!("Elements of higher order (type {kind}) are not supported"))
-                    .remedy("Save the mesh with elements of order 1 (in Gmsh: Mesh.ElementOrder = 1)"));
+            Shape::HigherOrder(corners, others) => {
+                self.element(corners, number, group)?;
+                for _ in 0..others {
+                    let node = self.node()?;
+                    self.file.middles.push(node);
+                }
             }
             Shape::Volume(name, nodes) => {
                 for _ in 0..nodes {

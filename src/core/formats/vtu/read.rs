@@ -209,15 +209,23 @@ fn assemble(s: &Scanner, name: &str, mut arrays: Vec<Array>) -> Result<MeshFile,
         let corners = from..to as usize;
         from = to as usize;
         let mut indices = [0; 4];
-        for (index, at) in indices.iter_mut().zip(corners.clone()) {
+        let (kind, count) = first_order(kind as u8, corners.len());
+        for (place, at) in corners.clone().enumerate() {
             let corner = connectivity.values.at(at);
             if !(corner >= 0.0 && corner < mesh.points.len() as f64 && corner.fract() == 0.0) {
                 let what = format!("Cell {cell} refers to point {corner}, which does not exist");
                 return Err(s.fault_at(connectivity.mark, what));
             }
-            *index = corner as u32;
+            match indices.get_mut(place) {
+                Some(index) => *index = corner as u32,
+                None if kind != 3 && kind != 5 && kind != 9 => break,
+                None => {}
+            }
+            if place >= count {
+                mesh.middles.push(corner as u32);
+            }
         }
-        match (kind as u8, corners.len()) {
+        match (kind, count) {
             (5, 3) => {
                 mesh.counting.triangles.push(mesh.triangles.len(), cell as u64);
                 mesh.triangles.push([indices[0], indices[1], indices[2]]);
@@ -237,10 +245,6 @@ fn assemble(s: &Scanner, name: &str, mut arrays: Vec<Array>) -> Result<MeshFile,
                 return Err(s.fault_at(offsets.mark, what));
             }
             (1 | 2, _) => points_alone += 1,
-            (21..=37, _) => {
-                let what = format!("Cells of higher order (type {kind}) are not supported");
-                return Err(s.fault_at(types.mark, what).remedy("Save the mesh with cells of order 1"));
-            }
             (other, _) => *skipped.entry(format!("VTK cell of type {other}")).or_default() += 1,
         }
     }
@@ -303,4 +307,15 @@ fn assemble(s: &Scanner, name: &str, mut arrays: Vec<Array>) -> Result<MeshFile,
     }
     mesh.groups.sort_by_key(|group| (group.dimension, group.tag));
     Ok(mesh)
+}
+
+/// The type of the cell at the corners of a cell, and their number: a line, triangle or quadrilateral for quadratic,
+/// biquadratic, cubic and Lagrange cells; others as they are.
+fn first_order(kind: u8, points: usize) -> (u8, usize) {
+    match (kind, points) {
+        (21 | 35 | 68, 3..) => (3, 2),
+        (22 | 34 | 69, 6..) => (5, 3),
+        (23 | 28 | 30 | 70, 6..) => (9, 4),
+        _ => (kind, points),
+    }
 }
