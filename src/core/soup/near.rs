@@ -286,7 +286,7 @@ impl<'a> Borders<'a> {
                 return;
             }
             let corners = corners.map(|k| self.all[k as usize]);
-            let (low, high) = extent(corners.into_iter());
+            let (low, high) = extent(corners);
             let long = (high - low).max_element();
             for k in self.within(low - CLOSE * long, high + CLOSE * long) {
                 if of_place.get(&place[k as usize]).is_some_and(|parts| parts.contains(&own)) {
