@@ -13,7 +13,7 @@ use quadfront::core::formats::{Format, WriteOptions};
 use quadfront::core::kernel::{LogMetric2, Metric2};
 use quadfront::core::progress::Nobody;
 use quadfront::core::record::Export;
-use quadfront::core::soup::MeshFile;
+use quadfront::core::soup::{MeshFile, Weld};
 
 #[path = "common/irregular.rs"]
 mod irregular;
@@ -151,7 +151,7 @@ fn triangles_that_are_no_cut_grid_imply_what_they_implied_before() {
     for stretch in [DVec2::ONE, DVec2::new(10.0, 1.0), DVec2::new(1.0, 10.0)] {
         for noise in [0.0, 0.1] {
             let file = with_noise(cut_grid([30, 30], zigzag, lattice(stretch)), [30, 30], noise);
-            let set = import(&file, false).unwrap().set;
+            let set = import(&file, Weld::Auto, false).unwrap().set;
             let (found, expected) = (implied_metric(&set), equilateral(&file));
             for (found, expected) in found.iter().zip(&expected) {
                 for (found, expected) in [(found.uu, expected.uu), (found.uv, expected.uv), (found.vv, expected.vv)] {
