@@ -396,6 +396,6 @@ mod tests {
         let preview = Preview::of(path, ImportOptions::default(), Arc::new(|| {}));
         let told = next(&preview, |told| matches!(told, PreviewNews::Loaded(Err(_))));
         let Some(PreviewNews::Loaded(Err(fault))) = told else { panic!("no complaint") };
-        assert!(fault.place.contains("b.obj, line 2") && fault.what.contains("vertex 3"), "{fault}");
+        assert!(fault.place.contains("b.obj, line 2") && fault.what.contains("vertex 2"), "{fault}");
     }
 }
