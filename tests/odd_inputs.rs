@@ -633,14 +633,3 @@ fn a_plate_that_stands_on_another_with_other_nodes_is_told_with_its_places() {
                 (0, 0.666667, 0), (0, 1.33333, 0), ...";
     assert!(repairs.contains(&told), "{repairs:?}");
 }
-
-#[test]
-fn a_scan_with_noise_of_a_hundredth_of_its_size_has_few_faces_and_few_irregular_nodes() {
-    let folder = tempfile::tempdir().unwrap();
-    let report = reported(folder.path(), "scan_noise_0.01.obj", &[]);
-    assert_eq!(report["repairs"], serde_json::json!(["265 folds were taken for noise, not for a crease"]));
-    let regions = report["regions"].as_u64().unwrap();
-    let irregular = &report["mesh"]["irregular"];
-    assert!(regions <= 30, "{regions} faces");
-    assert!(irregular["percent"].as_f64().unwrap() <= 6.0, "{irregular}");
-}

@@ -3,10 +3,6 @@
 //! more than an angle, where its two triangles disagree on which side is outside, or where it lies on a line that the
 //! file has a group for.
 
-mod noise;
-
-use noise::{is_noisy, keep_creases};
-
 use super::edges::{Edge, Edges, Triangles};
 
 /// Kind of a feature edge.
@@ -33,19 +29,7 @@ pub const ANGLE: f64 = 40.0 / 180.0 * std::f64::consts::PI;
 /// angle between normals, in radians (0 for a plane surface).
 pub fn features(mesh: &Triangles, edges: &Edges, angle: f64) -> Vec<Option<Feature>> {
     let least_cosine = libm::cos(angle);
-    let mut features: Vec<Option<Feature>> =
-        (0..edges.len()).map(|edge| feature(mesh, edges.get(edge), least_cosine)).collect();
-    if is_noisy(mesh, edges, &features) {
-        keep_creases(mesh, edges, &mut features, angle);
-    }
-    features
-}
-
-/// How many edges are folded beyond the angle, but no features: noise.
-pub fn noisy_folds(mesh: &Triangles, edges: &Edges, features: &[Option<Feature>], angle: f64) -> usize {
-    let least_cosine = libm::cos(angle);
-    let is_fold = |edge: &usize| feature(mesh, edges.get(*edge), least_cosine) == Some(Feature::Fold);
-    (0..edges.len()).filter(|&edge| features[edge].is_none()).filter(is_fold).count()
+    (0..edges.len()).map(|edge| feature(mesh, edges.get(edge), least_cosine)).collect()
 }
 
 /// Adds the edges on lines of the file.

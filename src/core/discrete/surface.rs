@@ -9,7 +9,7 @@ use rustc_hash::FxHashMap;
 
 use super::chart::{Chart, charts};
 use super::edges::{Edge, Edges, Triangles};
-use super::features::{ANGLE, features, noisy_folds, with_lines};
+use super::features::{ANGLE, features, with_lines};
 use super::further::groups_by_place;
 use super::planar_map::StretchBound;
 use crate::core::fault::Fault;
@@ -47,8 +47,6 @@ pub struct Surface {
     pub lines: Vec<Option<u32>>,
     /// Whether each curve of the domain is a feature, and not only a cut for flattening.
     pub features: Vec<bool>,
-    /// The number of edges that are folded beyond the angle, but are no features: noise.
-    pub noisy_folds: usize,
 }
 
 /// Border sides from one junction to the next, or a closed loop.
@@ -82,7 +80,6 @@ pub fn surface(
 ) -> Result<Surface, Fault> {
     let edges = Edges::unless(&mesh.triangles, &watch.cancel())?;
     let features = with_lines(features(mesh, &edges, angle), mesh, &edges);
-    let noisy_folds = noisy_folds(mesh, &edges, &features, angle);
     let charts = charts(mesh, &edges, &features, bound, watch)?;
     let cancel = watch.cancel();
     let mut line_of: Vec<Option<u32>> = vec![None; edges.len()];
@@ -143,7 +140,7 @@ pub fn surface(
     let chain_of = |curve: &DomainCurve| by_name.get(curve.name.as_str());
     let lines = domain.curves.iter().map(|curve| chain_of(curve)?.line).collect();
     let features = domain.curves.iter().map(|curve| chain_of(curve).is_some_and(|chain| chain.feature)).collect();
-    Ok(Surface { domain, charts, regions, lines, features, noisy_folds })
+    Ok(Surface { domain, charts, regions, lines, features })
 }
 
 impl Surface {

@@ -102,7 +102,6 @@ fn from_surface(
     let Repaired { mesh, copied, regions, lines, points, mut repairs } =
         repair(file, taking.weld, watch).map_err(here)?;
     let surface = surface(&mesh, &regions, taking.feature_angle, taking.bound(), watch).map_err(here)?;
-    Repair::NoisyFold.report(surface.noisy_folds, &mut repairs);
     let converts = taking.used == Some(MeshUse::Triangles);
     let mut fields = Vec::new();
     for spec in &case.fields {

@@ -24,7 +24,6 @@ pub(in crate::core) enum Repair {
     DividedSide,
     RepeatedPoint,
     JoinedEnd,
-    NoisyFold,
 }
 
 /// Why sides of triangles are divided.
@@ -54,7 +53,6 @@ impl Repair {
             Repair::DividedSegment => ["boundary segment", "boundary segments", EVEN],
             Repair::RepeatedPoint => ["repeated point of a polyline", "repeated points of polylines", "merged"],
             Repair::JoinedEnd => ["end of a curve", "ends of curves", "moved to where another one ends"],
-            Repair::NoisyFold => ["fold", "folds", "taken for noise, not for a crease"],
             Repair::DividedSide => ["side of a triangle", "sides of triangles", "divided to make counts even"],
         }
     }
