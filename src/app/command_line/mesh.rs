@@ -22,7 +22,8 @@ pub(in crate::app) struct MeshArguments {
     /// Smaller elements where MESH or its border is curved: distance of chord and arc, divided by the radius (0.01)
     #[arg(long, value_name = "ERR", requires = "mesh_size")]
     curvature: Option<f64>,
-    /// Keep edges of MESH with a fold beyond this angle, in degrees [default: 40]
+    /// Keep edges of MESH with a fold beyond this angle, in degrees; where MESH is noisy, folds of smoothed normals,
+    /// and what goes on from them beyond half of the angle [default: 40]
     #[arg(long, value_name = "DEGREES")]
     feature_angle: Option<f64>,
     /// Limit of the distortion of shapes where MESH is flattened [default: 4]

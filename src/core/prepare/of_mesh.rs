@@ -97,12 +97,14 @@ fn from_surface(
     let here = |fault: Fault| if fault.is_stop() { fault } else { fault.at(place) };
     let Repaired { mesh, copied, regions, lines, points, mut repairs } = repair(file, watch).map_err(here)?;
     let surface = surface(&mesh, &regions, taking.feature_angle, taking.bound(), watch).map_err(here)?;
+    Repair::NoisyFold.report(surface.dropped_folds, &mut repairs);
+    let noise = surface.noise.as_ref();
     let converts = taking.used == Some(MeshUse::Triangles);
     let mut fields = Vec::new();
     for spec in &case.fields {
         fields.push(match spec {
             &FieldSpec::Curvature { chord, least, far, ref place } => {
-                let sizes = curvature_sizes(&mesh, taking.feature_angle, [chord, least, far]);
+                let sizes = curvature_sizes(&mesh, taking.feature_angle, noise, [chord, least, far]);
                 surface.table(&sizes.map_err(|fault| fault.at(place.clone()))?)?
             }
             spec => Field::compile(spec, &|_| None)?,
@@ -115,7 +117,7 @@ fn from_surface(
                 surface.table(&given.iter().copied().chain(copies).collect::<Vec<_>>()).map_err(here)?
             }
             None if converts => surface.table(&implied_metric_in_space(&mesh)).map_err(here)?,
-            None => surface.table(&implied_sizes(&mesh)).map_err(here)?,
+            None => surface.table(&implied_sizes(&mesh, noise)).map_err(here)?,
         });
     }
     let faces = surface.regions.clone();

@@ -24,6 +24,7 @@ pub(in crate::core) enum Repair {
     DividedSide,
     RepeatedPoint,
     JoinedEnd,
+    NoisyFold,
 }
 
 /// Why sides of triangles are divided.
@@ -53,6 +54,7 @@ impl Repair {
             Repair::DividedSegment => ["boundary segment", "boundary segments", EVEN],
             Repair::RepeatedPoint => ["repeated point of a polyline", "repeated points of polylines", "merged"],
             Repair::JoinedEnd => ["end of a curve", "ends of curves", "moved to where another one ends"],
+            Repair::NoisyFold => ["folded edge", "folded edges", "taken as noise, not kept"],
             Repair::DividedSide => ["side of a triangle", "sides of triangles", "divided to make counts even"],
         }
     }
