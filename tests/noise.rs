@@ -9,11 +9,20 @@ mod xor_shift;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::{PI, TAU};
+use std::path::Path;
 
 use glam::DVec3;
 use irregular::irregular_inside;
+use quadfront::core::case::Case;
+use quadfront::core::convert::conversion::convert;
 use quadfront::core::discrete::features::{ANGLE, features, noisy_folds};
 use quadfront::core::discrete::{Edges, Feature, Triangles};
+use quadfront::core::formats::format::{read_mesh, write_mesh};
+use quadfront::core::formats::{Format, WriteOptions};
+use quadfront::core::progress::Nobody;
+use quadfront::core::record::Export;
+use quadfront::core::soup::soundness::examine;
+use quadfront::core::soup::{Allow, MeshFile};
 use xor_shift::XorShift;
 
 /// A surface as it was constructed: its triangles, and the creases on which points lie, by numbers of their own.
@@ -253,4 +262,66 @@ fn clean_folds_are_features_exactly_beyond_the_angle() {
         assert_eq!(found(&waves, angle), folded(&waves, angle), "{degrees}");
         assert!(degrees > 20.0 || !found(&waves, angle).is_empty());
     }
+}
+
+fn scan() -> MeshFile {
+    read_mesh(&Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/scan_noise_0.01.obj"), None).unwrap()
+}
+
+/// The least scaled Jacobian of quadrilaterals, as Verdict defines it: at each corner the component of the cross
+/// product of its sides along the normal between the diagonals, over their lengths.
+fn least_scaled_jacobian(mesh: &MeshFile) -> f64 {
+    let of = |quad: &[u32; 4]| {
+        let p = quad.map(|k| mesh.points[k as usize]);
+        let normal = (p[2] - p[0]).cross(p[3] - p[1]).normalize();
+        let corner = |k: usize| {
+            let (before, after) = (p[k] - p[(k + 3) % 4], p[(k + 1) % 4] - p[k]);
+            before.cross(after).dot(normal) / (before.length() * after.length())
+        };
+        (0..4).map(corner).fold(f64::INFINITY, f64::min)
+    };
+    mesh.quads.iter().map(of).fold(f64::INFINITY, f64::min)
+}
+
+/// A noisy scan converted by the defaults and found sound: the quadrilaterals, how many faces, and what was told.
+fn converted(scan: &MeshFile) -> (MeshFile, usize, Vec<String>) {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("scan.ply");
+    write_mesh(&path, Format::Ply, scan, WriteOptions::default()).unwrap();
+    let done = convert(&Case::of_mesh(path, None), &mut Nobody).unwrap();
+    let mesh = Export::of(&done.mesh, &done.names).file;
+    assert!(mesh.triangles.is_empty() && done.mesh.folded().is_empty());
+    examine(&mesh).verdict(Allow::default()).unwrap();
+    assert!(least_scaled_jacobian(&mesh) > 0.0);
+    (mesh, done.names.faces.len(), done.repairs)
+}
+
+#[test]
+fn a_scan_becomes_few_faces_with_few_irregular_nodes() {
+    let (mesh, faces, told) = converted(&scan());
+    assert!(faces <= 30, "{faces} faces");
+    let share = irregular_inside(&mesh) as f64 / mesh.points.len() as f64;
+    assert!(share <= 0.06, "{share} are irregular");
+    assert!(told.contains(&"278 folded edges were taken as noise, not kept".to_owned()), "{told:?}");
+}
+
+#[test]
+fn a_scan_of_twice_the_noise_converts_relaxed_where_quadrilaterals_would_fold() {
+    let clean = scan();
+    let mut relaxed = 0;
+    for seed in 1..4 {
+        let mut random = XorShift::of(seed);
+        let mut normal = || (0..12).map(|_| random.next() as f64 / u64::MAX as f64).sum::<f64>() - 6.0;
+        let mut noisy = clean.clone();
+        noisy.points.iter_mut().for_each(|p| *p += 0.0115 * DVec3::new(normal(), normal(), normal()));
+        let (mesh, faces, told) = converted(&noisy);
+        assert!(faces <= 30, "{seed}: {faces} faces");
+        relaxed += usize::from(told.iter().any(|told| told.contains("moved to the mean of those around")));
+        // Nothing was flattened: near each point of the surface there is a node.
+        for _ in 0..300 {
+            let p = clean.points[random.below(clean.points.len())];
+            assert!(mesh.points.iter().any(|q| q.distance(p) < 0.1), "{seed}: no node near {p}");
+        }
+    }
+    assert!(relaxed > 0);
 }

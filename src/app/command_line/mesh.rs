@@ -10,7 +10,8 @@ use crate::core::step::{StepOptions, Unit};
 /// How a mesh is imported.
 #[derive(Args, Default)]
 pub(in crate::app) struct MeshArguments {
-    /// Use of MESH: convert its triangles, or remesh its shape [default: triangles in the plane, shape in space]
+    /// Use of MESH: convert its triangles, or remesh its shape [default: shape in space, and in the plane if at least
+    /// half of the triangles are slenderer than 1:10 and span their face]
     #[arg(long = "use", value_name = "triangles|shape", value_parser = mesh_use)]
     used: Option<MeshUse>,
     /// With --use triangles, divide one side of each border that has an odd number of sides, instead of refusing MESH

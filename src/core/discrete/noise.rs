@@ -11,7 +11,7 @@ use crate::core::kernel::Metric3;
 use crate::core::progress::Cancel;
 
 /// A piece is noisy if less than this part of its folds is left in their sum over a neighbourhood,
-const MOST_LEFT: f64 = 0.45;
+const MOST_LEFT: f64 = 0.42;
 /// and they are at least this large on average (radians).
 const LEAST_FOLD: f64 = 5.0 / 180.0 * std::f64::consts::PI;
 /// Larger folds are not summed: they may be creases,
@@ -19,7 +19,7 @@ const SMALL: f64 = 40.0 / 180.0 * std::f64::consts::PI;
 /// unless more than this part of all edges are: then nothing tells creases from noise, and all are kept.
 const MOST_FOLDED: f64 = 1.0 / 3.0;
 /// Pieces with fewer edges than this are too small to tell.
-const LEAST_EDGES: u32 = 60;
+const LEAST_EDGES: u32 = 200;
 /// Rounds of smoothing.
 const ROUNDS: usize = 20;
 /// Normals count less the farther they are apart; at this distance of their tips 0.61 as much.

@@ -50,6 +50,8 @@ pub struct Surface {
     pub features: Vec<bool>,
     /// Its noise, if it has any that folds edges.
     pub noise: Option<Noise>,
+    /// The lengths of its features, from corner to corner.
+    pub feature_lengths: Vec<f64>,
     /// The number of folds that are taken as noise.
     pub dropped_folds: usize,
 }
@@ -98,6 +100,7 @@ pub fn surface(
     let mut vertices = Vec::new();
     let mut vertex_of = vec![u32::MAX; mesh.points.len()];
     let mut curves = Vec::with_capacity(chains.len());
+    let mut feature_lengths = Vec::new();
     for (number, chain) in chains.iter().enumerate() {
         let ends = [chain.points[0], chain.points[chain.points.len() - 1]].map(|point| {
             let known = &mut vertex_of[point as usize];
@@ -109,6 +112,9 @@ pub fn surface(
         });
         let points = chain.points.iter().map(|&p| mesh.points[p as usize]).collect();
         let corners = if chain.feature { corners(mesh, &chain.points, angle) } else { Vec::new() };
+        if chain.feature {
+            feature_lengths.extend(lengths(mesh, &chain.points, &corners));
+        }
         curves.push(NamedCurve {
             name: format!("curve {}", number + 1),
             curve: Arc::new(SpaceCurve::of_sides(points, corners)),
@@ -147,7 +153,7 @@ pub fn surface(
     let chain_of = |curve: &DomainCurve| by_name.get(curve.name.as_str());
     let lines = domain.curves.iter().map(|curve| chain_of(curve)?.line).collect();
     let features = domain.curves.iter().map(|curve| chain_of(curve).is_some_and(|chain| chain.feature)).collect();
-    Ok(Surface { domain, charts, regions, lines, features, noise, dropped_folds })
+    Ok(Surface { domain, charts, regions, lines, features, noise, feature_lengths, dropped_folds })
 }
 
 impl Surface {
@@ -340,6 +346,16 @@ fn corners(mesh: &Triangles, points: &[u32], angle: f64) -> Vec<u32> {
         before.dot(after) < least_cosine * before.length() * after.length()
     };
     (1..points.len() - 1).filter(turns).map(|k| k as u32).collect()
+}
+
+/// The lengths of a chain from each corner to the next.
+fn lengths(mesh: &Triangles, points: &[u32], corners: &[u32]) -> Vec<f64> {
+    let long = |side: &[u32]| mesh.points[side[0] as usize].distance(mesh.points[side[1] as usize]);
+    let mut parts: Vec<f64> = vec![0.0; corners.len() + 1];
+    for (k, side) in (0_u32..).zip(points.windows(2)) {
+        parts[corners.partition_point(|&corner| corner <= k)] += long(side);
+    }
+    parts
 }
 
 /// The loops of a chart as images of the curves, the outer one first.
