@@ -18,6 +18,7 @@ use quadfront::core::discrete::{Edges, StretchBound};
 use quadfront::core::fault::Fault;
 use quadfront::core::formats::format::{read_bytes, read_mesh, write_mesh};
 use quadfront::core::formats::{Format, WriteOptions};
+use quadfront::core::kernel::Metric3;
 use quadfront::core::progress::Nobody;
 use quadfront::core::record::Export;
 use quadfront::core::soup::soundness::examine;
@@ -151,6 +152,82 @@ fn an_open_part_with_an_odd_count_is_refused_and_words_that_are_none_are_named()
         let fault = Case::parse(&format!("version = 1\n{line}\n"), "a", "a.toml", Path::new("")).unwrap_err();
         assert!(fault.to_string().contains(told), "{fault}");
     }
+}
+
+/// A plate of 100 by 50 with a round hole of `n` sides and radius 10 in the middle of its left half, as CAD divides it:
+/// every triangle has its corners on borders.
+fn drawn_plate(n: u32) -> MeshFile {
+    let mut mesh = MeshFile::default();
+    let corner =
+        |k: u32| DVec3::new([0.0, 100.0, 100.0, 0.0][k as usize % 4], [0.0, 0.0, 50.0, 50.0][k as usize % 4], 0.0);
+    let on_hole = |k: u32| {
+        let (sin, cos) = libm::sincos(std::f64::consts::TAU * f64::from(k % n) / f64::from(n));
+        DVec3::new(25.0 + 10.0 * cos, 25.0 + 10.0 * sin, 0.0)
+    };
+    mesh.points.extend((0..4).map(corner).chain((0..n).map(on_hole)));
+    // Corner k of the plate sees the sides of the hole in its quarter, from the left one at 180 degrees on.
+    for k in 0..4 {
+        let first = n / 2 + k * n / 4;
+        let own = |k: u32| 4 + k % n;
+        mesh.triangles.extend((first..first + n / 4).map(|side| [k, own(side + 1), own(side)]));
+        mesh.triangles.push([k, (k + 1) % 4, own(first + n / 4)]);
+    }
+    mesh
+}
+
+/// The report and the quadrilaterals of a mesh with some lines of a case.
+fn told(mesh: &MeshFile, lines: &str) -> (Vec<String>, MeshFile) {
+    let folder = tempfile::tempdir().unwrap();
+    write_mesh(&folder.path().join("a.msh"), Format::Msh, mesh, WriteOptions::default()).unwrap();
+    let text = format!("version = 1\nmesh = \"a.msh\"\n{lines}\n");
+    let done = convert(&Case::parse(&text, "a", "a.toml", folder.path()).unwrap(), &mut Nobody).unwrap();
+    let quads = Export::of(&done.mesh, &done.names).file;
+    examine(&quads).verdict(Allow::default()).unwrap();
+    assert!(done.mesh.folded().is_empty());
+    (done.repairs, quads)
+}
+
+#[test]
+fn triangles_that_only_draw_a_shape_are_meshed_anew_with_sizes_that_fit_and_others_are_kept() {
+    let drawn = drawn_plate(48);
+    // 48 long triangles at the hole and four between the corners.
+    assert_eq!(drawn.triangles.len(), 52);
+    let lean = |t: &&[u32; 3]| {
+        let [a, b, c] = t.map(|k| drawn.points[k as usize]);
+        let [x, y, z] = [a.distance(b), b.distance(c), c.distance(a)];
+        let longest = x.max(y).max(z);
+        longest * longest / (b - a).cross(c - a).length() > 10.0
+    };
+    let share = 100 * drawn.triangles.iter().filter(lean).count() / 52;
+    assert!(share >= 50, "{share}");
+    let (repairs, quads) = told(&drawn, "");
+    let expected = format!("used as a shape: {share} % of its triangles are slenderer than 1:10 and span their face");
+    assert!(repairs.contains(&expected), "{repairs:?}");
+    // A thirtieth of the diagonal, and no side is shorter.
+    let size = 3.7;
+    assert!(repairs.iter().any(|told| told.contains("at most 3.7,")), "{repairs:?}");
+    let area = 5000.0 - std::f64::consts::PI * 100.0;
+    let expected = area / (size * size);
+    assert!((0.8..2.0).contains(&(quads.quads.len() as f64 / expected)), "{} {expected}", quads.quads.len());
+    // Own sizes are those of the case, in space too; only what was decided is told.
+    let (repairs, _) = told(&drawn, "[[metric]]\nkind = \"uniform\"\nh = 5.0");
+    assert!(repairs.iter().any(|told| told.starts_with("used as a shape")), "{repairs:?}");
+    assert!(!repairs.iter().any(|told| told.starts_with("sizes fit")), "{repairs:?}");
+    let (repairs, quads) = told(&drawn, "use = \"triangles\"");
+    assert!(repairs.is_empty() && drawn.points.iter().all(|p| has(&quads, *p)), "{repairs:?}");
+    let mut tilted = drawn.clone();
+    tilted.points.iter_mut().for_each(|p| *p = DVec3::new(p.x, 0.8 * p.y, 0.6 * p.y));
+    let (repairs, quads) = told(&tilted, "");
+    assert!(repairs.iter().any(|told| told.starts_with("used as a shape")), "{repairs:?}");
+    assert!((0.8..2.0).contains(&(quads.quads.len() as f64 / expected)), "{} {expected}", quads.quads.len());
+    // With sizes at its points it is an analysis mesh.
+    let sized = MeshFile { metric: Some(vec![Metric3::isotropic(5.0); drawn.points.len()]), ..drawn.clone() };
+    assert!(!told(&sized, "").0.iter().any(|told| told.starts_with("used as a shape")));
+    // Rows of a boundary layer are slender, but do not span the face.
+    let mut rows = grid(12, |_, _| 0.0);
+    rows.points.iter_mut().for_each(|p| p.y *= 0.05);
+    assert!(told(&rows, "").0.is_empty());
+    assert!(told(&plate(8, 0.0), "").0.is_empty());
 }
 
 #[test]

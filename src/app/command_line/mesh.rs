@@ -10,7 +10,8 @@ use crate::core::step::{StepOptions, Unit};
 /// How a mesh is imported.
 #[derive(Args, Default)]
 pub(in crate::app) struct MeshArguments {
-    /// Use of MESH: convert its triangles, or remesh its shape [default: triangles in the plane, shape in space]
+    /// Use of MESH: convert its triangles, or remesh its shape [default: shape in space, and in the plane if at least
+    /// half of the triangles are slenderer than 1:10 and span their face]
     #[arg(long = "use", value_name = "triangles|shape", value_parser = mesh_use)]
     used: Option<MeshUse>,
     /// With --use triangles, divide one side of each border that has an odd number of sides, instead of refusing MESH
@@ -22,7 +23,8 @@ pub(in crate::app) struct MeshArguments {
     /// Smaller elements where MESH or its border is curved: distance of chord and arc, divided by the radius (0.01)
     #[arg(long, value_name = "ERR", requires = "mesh_size")]
     curvature: Option<f64>,
-    /// Keep edges of MESH with a fold beyond this angle, in degrees [default: 40]
+    /// Keep edges of MESH with a fold beyond this angle, in degrees; where MESH is noisy, folds of smoothed normals,
+    /// and what goes on from them beyond half of the angle [default: 40]
     #[arg(long, value_name = "DEGREES")]
     feature_angle: Option<f64>,
     /// Limit of the distortion of shapes where MESH is flattened [default: 4]

@@ -108,7 +108,7 @@ impl Import {
     /// The use by default.
     pub fn use_by_default(&self) -> MeshUse {
         match &self.loaded {
-            Some(loaded) if loaded.is_plane && !self.is_part() => MeshUse::Triangles,
+            Some(loaded) if loaded.is_plane && !self.is_part() && loaded.drawn.is_none() => MeshUse::Triangles,
             _ => MeshUse::Shape,
         }
     }

@@ -5,11 +5,9 @@ use std::path::{Path, PathBuf};
 
 use super::{Case, DomainSource, MeshSource, MeshUse, VERSION};
 use crate::core::fault::Fault;
+use crate::core::metric::fitting::FINEST;
 use crate::core::soup::{Ignored, Weld};
 use crate::core::step::StepOptions;
-
-/// With [`ImportOptions::curvature`], the smallest size is [`ImportOptions::mesh_size`] divided by this.
-const FINEST: f64 = 100.0;
 
 /// Settings for the import of a mesh; what is absent keeps its default ([`Taking`](super::Taking)).
 #[derive(Clone, Debug, Default, PartialEq)]

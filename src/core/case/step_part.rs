@@ -4,14 +4,9 @@ use std::path::Path;
 
 use super::{Case, ImportOptions, VERSION};
 use crate::core::fault::{Fault, FaultKind};
+use crate::core::metric::fitting::{CHORD, fitting_size};
 use crate::core::progress::Pace;
 use crate::core::step::{self, Part};
-
-/// Without a size, elements are as large as this fraction of the diagonal where nothing bends, and at most as long as
-/// the shorter edges.
-const SIZE: f64 = 1.0 / 30.0;
-/// Without a size, the distance between chord and arc, divided by the radius.
-const CHORD: f64 = 0.03;
 
 impl ImportOptions {
     /// The case of a STEP file, and the part that it has: all of the part is in the text of the case. `name` is that of
@@ -60,7 +55,7 @@ impl ImportOptions {
         let sized = match self.mesh_size {
             Some(_) => self.clone(),
             None => ImportOptions {
-                mesh_size: Some(rounded((SIZE * part.diagonal).min(part.short_edge))),
+                mesh_size: Some(fitting_size(part.diagonal, part.short_edge)),
                 curvature: Some(CHORD),
                 ..self.clone()
             },
@@ -74,9 +69,4 @@ impl ImportOptions {
             part.tables()
         )
     }
-}
-
-/// A number with two digits.
-fn rounded(number: f64) -> f64 {
-    format!("{number:.1e}").parse().unwrap_or(number)
 }

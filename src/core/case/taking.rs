@@ -55,7 +55,8 @@ impl MeshUse {
 /// How a mesh is used.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Taking {
-    /// As triangles or as a shape; by default, triangles for a mesh in the plane and the shape for one in space.
+    /// As triangles or as a shape; by default, triangles for a mesh in the plane, and the shape for one in space or one
+    /// whose triangles only draw a shape.
     pub used: Option<MeshUse>,
     /// Edges folded by more than this are kept (radians).
     pub feature_angle: f64,

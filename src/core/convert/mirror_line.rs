@@ -1,12 +1,13 @@
-//! The background of a case. In a symmetric domain it depends on how finely the mirror line is divided, which is free:
+//! The background of a case. On a noisy surface it depends on where quadrilaterals would fold ([`noisy_surface`]). In a
+//! symmetric domain it depends on how finely the mirror line is divided, which is free:
 //! a few numbers of segments are tried (docs/algorithm.md, "Symmetry").
 
 use std::f64::consts::SQRT_2;
 
-use super::Converter;
+use super::{Converter, noisy_surface};
 use crate::core::case::{Case, Parameters};
 use crate::core::fault::Fault;
-use crate::core::prepare::{self, Background, MirrorLine};
+use crate::core::prepare::{self, Background, MirrorLine, Trial};
 use crate::core::progress::{Stage, Watch};
 
 /// Halves of more triangles are not tried.
@@ -24,7 +25,10 @@ const MOST_MORE: f64 = 1.1;
 /// # Errors
 /// Faults of the case's geometry, metric or mesh.
 pub fn background(case: &Case, watch: &mut dyn Watch) -> Result<Background, Fault> {
-    let mut best = prepare::background_with(case, &[], watch)?;
+    let mut best = prepare::background_with(case, Trial::default(), watch)?;
+    if best.is_noisy {
+        return noisy_surface::relaxed(case, best, watch);
+    }
     let by_sizes = best.mirror_line.clone();
     if by_sizes.is_empty() || best.mesh.element_count() > MOST_TRIANGLES {
         return Ok(best);
@@ -40,7 +44,8 @@ pub fn background(case: &Case, watch: &mut dyn Watch) -> Result<Background, Faul
         for change in CHANGES.into_iter().filter(|&change| is_near(number, change)) {
             let mut tried = more.clone();
             tried[part] = change;
-            let Ok(other) = prepare::background_with(case, &tried, &mut cancel) else { continue };
+            let trial = Trial { more: &tried, ..Trial::default() };
+            let Ok(other) = prepare::background_with(case, trial, &mut cancel) else { continue };
             let Some(found) = Outcome::of(&other, &parameters, &mut cancel) else { continue };
             if found.irregular < least && is_within(MOST_MORE, found.quads as f64 / first.quads as f64) {
                 (best, least, more) = (other, found.irregular, tried);

@@ -29,6 +29,7 @@ mod last_resort;
 mod finish;
 mod converter;
 mod mirror_line;
+mod noisy_surface;
 pub mod walk;
 pub mod conversion;
 

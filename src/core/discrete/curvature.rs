@@ -5,7 +5,8 @@
 use glam::DVec3;
 
 use super::edges::{Edge, Edges, Triangles};
-use super::features::features;
+use super::features::features_beside;
+use super::noise::Noise;
 use crate::core::fault::Fault;
 use crate::core::geometry::Bend;
 use crate::core::kernel::Metric3;
@@ -15,19 +16,24 @@ use crate::core::metric::Curvature;
 type Sum = [f64; 6];
 
 /// Sizes by curvature at the points of a surface (as the field of kind "curvature"); folds beyond `angle` (radians) do
-/// not count.
+/// not count, nor does noise.
 ///
 /// # Errors
 /// A chord or sizes that are not positive.
-pub fn curvature_sizes(mesh: &Triangles, angle: f64, [chord, least, far]: [f64; 3]) -> Result<Vec<Metric3>, Fault> {
+pub fn curvature_sizes(
+    mesh: &Triangles,
+    angle: f64,
+    noise: Option<&Noise>,
+    [chord, least, far]: [f64; 3],
+) -> Result<Vec<Metric3>, Fault> {
     let by = Curvature::new(chord, least, far)?;
-    Ok(bends(mesh, angle).iter().map(|bend| by.metric(bend.as_ref())).collect())
+    Ok(bends(mesh, angle, noise).iter().map(|bend| by.metric(bend.as_ref())).collect())
 }
 
 /// The curvature at each point; `None` without a triangle of positive area.
-fn bends(mesh: &Triangles, angle: f64) -> Vec<Option<Bend>> {
+fn bends(mesh: &Triangles, angle: f64, noise: Option<&Noise>) -> Vec<Option<Bend>> {
     let edges = Edges::of(&mesh.triangles);
-    let features = features(mesh, &edges, angle);
+    let features = features_beside(mesh, &edges, angle, noise);
     let n = mesh.points.len();
     let mut own: Vec<(Sum, f64)> = vec![([0.0; 6], 0.0); n];
     let mut normal = vec![DVec3::ZERO; n];
@@ -44,7 +50,8 @@ fn bends(mesh: &Triangles, angle: f64) -> Vec<Option<Bend>> {
         let [a, b] = mesh.side(one).map(|k| mesh.points[k as usize]);
         let along = b - a;
         let long = along.length();
-        let [n, m] = [one, other].map(|side| mesh.area_vector(side as usize / 3));
+        let normal = |t: usize| noise.map_or_else(|| mesh.area_vector(t), |noise| noise.normal[t]);
+        let [n, m] = [one, other].map(|side| normal(side as usize / 3));
         let turn = libm::atan2(n.cross(m).dot(along) / long.max(f64::MIN_POSITIVE), n.dot(m));
         // Half of the edge belongs to each end.
         let weight = 0.5 * turn / long.max(f64::MIN_POSITIVE);
@@ -104,7 +111,7 @@ mod tests {
 
     #[test]
     fn a_ball_and_a_tube_have_the_curvature_of_their_radius_and_a_plate_has_none() {
-        for bend in bends(&sphere(16), ANGLE).iter().flatten() {
+        for bend in bends(&sphere(16), ANGLE, None).iter().flatten() {
             assert!(bend.curvatures.iter().all(|k| (0.8..1.25).contains(k)), "{bend:?}");
         }
         // A tube about z: bent around, straight along.
@@ -113,13 +120,13 @@ mod tests {
         let (low, high) = mesh.points.iter().fold((f64::MAX, f64::MIN), |(l, h), p| (l.min(p.z), h.max(p.z)));
         let inner = |z: f64| z > low + 0.3 * (high - low) && z < high - 0.3 * (high - low);
         let mut seen = 0;
-        for (bend, _) in bends(&mesh, ANGLE).iter().zip(&mesh.points).filter(|(_, p)| inner(p.z)) {
+        for (bend, _) in bends(&mesh, ANGLE, None).iter().zip(&mesh.points).filter(|(_, p)| inner(p.z)) {
             let bend = bend.as_ref().unwrap();
             assert!((bend.curvatures[0] * radius - 1.0).abs() < 0.1, "{bend:?}");
             assert!(bend.curvatures[1].abs() * radius < 0.1 && bend.directions[1].z.abs() > 0.99, "{bend:?}");
             seen += 1;
         }
         assert!(seen > 100);
-        assert!(bends(&plate(6, 0.0), ANGLE).iter().flatten().all(|bend| bend.curvatures[0].abs() < 1e-12));
+        assert!(bends(&plate(6, 0.0), ANGLE, None).iter().flatten().all(|bend| bend.curvatures[0].abs() < 1e-12));
     }
 }

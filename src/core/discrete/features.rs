@@ -3,7 +3,11 @@
 //! more than an angle, where its two triangles disagree on which side is outside, or where it lies on a line that the
 //! file has a group for.
 
+use super::creases::creases;
 use super::edges::{Edge, Edges, Triangles};
+use super::noise::Noise;
+use crate::core::fault::Fault;
+use crate::core::progress::Cancel;
 
 /// Kind of a feature edge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -26,10 +30,48 @@ pub enum Feature {
 pub const ANGLE: f64 = 40.0 / 180.0 * std::f64::consts::PI;
 
 /// The kind of feature of each edge by the shape alone, `None` for edges that are no features; `angle` is the feature
-/// angle between normals, in radians (0 for a plane surface).
+/// angle between normals, in radians (0 for a plane surface). In noisy pieces folds are those of smoothed normals.
 pub fn features(mesh: &Triangles, edges: &Edges, angle: f64) -> Vec<Option<Feature>> {
+    features_and_noise(mesh, edges, angle, &Cancel::default()).unwrap_or_default().0
+}
+
+/// The features of a surface, and its noise if it has any.
+///
+/// # Errors
+/// [`Fault::stopped`].
+pub fn features_and_noise(
+    mesh: &Triangles,
+    edges: &Edges,
+    angle: f64,
+    cancel: &Cancel,
+) -> Result<(Vec<Option<Feature>>, Option<Noise>), Fault> {
+    let found = features_beside(mesh, edges, angle, None);
+    cancel.check()?;
+    // Noise that folds no edge changes no feature.
+    let noise = if found.contains(&Some(Feature::Fold)) { Noise::of(mesh, edges, cancel)? } else { None };
+    let found = if noise.is_some() { features_beside(mesh, edges, angle, noise.as_ref()) } else { found };
+    Ok((found, noise))
+}
+
+/// The features of a surface with noise that is known.
+pub fn features_beside(mesh: &Triangles, edges: &Edges, angle: f64, noise: Option<&Noise>) -> Vec<Option<Feature>> {
     let least_cosine = libm::cos(angle);
-    (0..edges.len()).map(|edge| feature(mesh, edges.get(edge), least_cosine)).collect()
+    let mut found: Vec<_> = (0..edges.len()).map(|edge| feature(mesh, edges.get(edge), least_cosine)).collect();
+    if let Some(noise) = noise {
+        let kept: Vec<bool> = found.iter().map(|kind| kind.is_some_and(|kind| kind != Feature::Fold)).collect();
+        let creases = creases(mesh, edges, noise, angle, &kept);
+        for (e, kind) in found.iter_mut().enumerate().filter(|(e, _)| !kept[*e] && noise.is_inside(edges.get(*e))) {
+            *kind = creases[e].then_some(Feature::Fold);
+        }
+    }
+    found
+}
+
+/// The number of edges that are folded by more than the feature angle and no features: noise.
+pub fn noisy_folds(mesh: &Triangles, edges: &Edges, angle: f64, found: &[Option<Feature>]) -> usize {
+    let least_cosine = libm::cos(angle);
+    let others = (0..edges.len()).filter(|&edge| found[edge].is_none());
+    others.filter(|&edge| feature(mesh, edges.get(edge), least_cosine).is_some()).count()
 }
 
 /// Adds the edges on lines of the file.

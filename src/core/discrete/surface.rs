@@ -9,8 +9,9 @@ use rustc_hash::FxHashMap;
 
 use super::chart::{Chart, charts};
 use super::edges::{Edge, Edges, Triangles};
-use super::features::{ANGLE, features, with_lines};
+use super::features::{ANGLE, features_and_noise, features_beside, noisy_folds, with_lines};
 use super::further::groups_by_place;
+use super::noise::Noise;
 use super::planar_map::StretchBound;
 use crate::core::fault::Fault;
 use crate::core::geometry::complex::assemble;
@@ -47,6 +48,12 @@ pub struct Surface {
     pub lines: Vec<Option<u32>>,
     /// Whether each curve of the domain is a feature, and not only a cut for flattening.
     pub features: Vec<bool>,
+    /// Its noise, if it has any that folds edges.
+    pub noise: Option<Noise>,
+    /// The lengths of its features, from corner to corner.
+    pub feature_lengths: Vec<f64>,
+    /// The number of folds that are taken as noise.
+    pub dropped_folds: usize,
 }
 
 /// Border sides from one junction to the next, or a closed loop.
@@ -79,7 +86,9 @@ pub fn surface(
     watch: &mut dyn Watch,
 ) -> Result<Surface, Fault> {
     let edges = Edges::unless(&mesh.triangles, &watch.cancel())?;
-    let features = with_lines(features(mesh, &edges, angle), mesh, &edges);
+    let (features, noise) = features_and_noise(mesh, &edges, angle, &watch.cancel())?;
+    let dropped_folds = noisy_folds(mesh, &edges, angle, &features);
+    let features = with_lines(features, mesh, &edges);
     let charts = charts(mesh, &edges, &features, bound, watch)?;
     let cancel = watch.cancel();
     let mut line_of: Vec<Option<u32>> = vec![None; edges.len()];
@@ -91,6 +100,7 @@ pub fn surface(
     let mut vertices = Vec::new();
     let mut vertex_of = vec![u32::MAX; mesh.points.len()];
     let mut curves = Vec::with_capacity(chains.len());
+    let mut feature_lengths = Vec::new();
     for (number, chain) in chains.iter().enumerate() {
         let ends = [chain.points[0], chain.points[chain.points.len() - 1]].map(|point| {
             let known = &mut vertex_of[point as usize];
@@ -102,6 +112,9 @@ pub fn surface(
         });
         let points = chain.points.iter().map(|&p| mesh.points[p as usize]).collect();
         let corners = if chain.feature { corners(mesh, &chain.points, angle) } else { Vec::new() };
+        if chain.feature {
+            feature_lengths.extend(lengths(mesh, &chain.points, &corners));
+        }
         curves.push(NamedCurve {
             name: format!("curve {}", number + 1),
             curve: Arc::new(SpaceCurve::of_sides(points, corners)),
@@ -140,7 +153,7 @@ pub fn surface(
     let chain_of = |curve: &DomainCurve| by_name.get(curve.name.as_str());
     let lines = domain.curves.iter().map(|curve| chain_of(curve)?.line).collect();
     let features = domain.curves.iter().map(|curve| chain_of(curve).is_some_and(|chain| chain.feature)).collect();
-    Ok(Surface { domain, charts, regions, lines, features })
+    Ok(Surface { domain, charts, regions, lines, features, noise, feature_lengths, dropped_folds })
 }
 
 impl Surface {
@@ -185,15 +198,15 @@ impl Surface {
 
 /// The isotropic sizes for a surface without given sizes, at each point: the mean length of the edges there, at most
 /// the size at which the surface turns by 30 degrees (but at least a sixth of the mean) or deviates by 0.3 % of its
-/// extent, and with a growth of at most 1.3 from one element to the next.
-pub fn implied_sizes(mesh: &Triangles) -> Vec<Metric3> {
+/// extent, and with a growth of at most 1.3 from one element to the next. Noise does not turn.
+pub fn implied_sizes(mesh: &Triangles, noise: Option<&Noise>) -> Vec<Metric3> {
     let edges = Edges::of(&mesh.triangles);
     let mut sums = vec![(0.0, 0.0); mesh.points.len()];
     // Upper bounds by turning and by deviation.
     let mut most = vec![(f64::INFINITY, f64::INFINITY); mesh.points.len()];
     let (low, high) = extent(mesh.points.iter().copied());
     let away = MOST_AWAY * low.distance(high);
-    let features = features(mesh, &edges, ANGLE);
+    let features = features_beside(mesh, &edges, ANGLE, noise);
     for edge in 0..edges.len() {
         let Edge { ends, sides } = edges.get(edge);
         let [a, b] = ends.map(|end| mesh.points[end as usize]);
@@ -205,16 +218,16 @@ pub fn implied_sizes(mesh: &Triangles) -> Vec<Metric3> {
         }
         if let (None, &[one, other]) = (features[edge], sides) {
             let [n, m] = [one, other].map(|side| mesh.area_vector(side as usize / 3));
-            let turn = libm::atan2(n.cross(m).length(), n.dot(m));
+            let fold = libm::atan2(n.cross(m).length(), n.dot(m));
+            let turn = noise.and_then(|noise| noise.turn([one, other].map(|side| side as usize / 3))).unwrap_or(fold);
             // Half the height of each triangle over the edge: the length over which the surface turns.
             let way = 0.5 * (n.length() + m.length()) / long.max(f64::MIN_POSITIVE);
             let corners = [one, other].map(|side| mesh.triangles[side as usize / 3]);
             for node in corners.as_flattened() {
                 let (by_turn, by_distance) = &mut most[*node as usize];
-                let turn = turn.max(f64::MIN_POSITIVE);
-                *by_turn = by_turn.min(way * MOST_TURN / turn);
+                *by_turn = by_turn.min(way * MOST_TURN / turn.max(f64::MIN_POSITIVE));
                 // An element with a fold across its middle deviates by a quarter of its size times the angle.
-                *by_distance = by_distance.min(4.0 * away / turn);
+                *by_distance = by_distance.min(4.0 * away / fold.max(f64::MIN_POSITIVE));
             }
         }
     }
@@ -335,6 +348,16 @@ fn corners(mesh: &Triangles, points: &[u32], angle: f64) -> Vec<u32> {
     (1..points.len() - 1).filter(turns).map(|k| k as u32).collect()
 }
 
+/// The lengths of a chain from each corner to the next.
+fn lengths(mesh: &Triangles, points: &[u32], corners: &[u32]) -> Vec<f64> {
+    let long = |side: &[u32]| mesh.points[side[0] as usize].distance(mesh.points[side[1] as usize]);
+    let mut parts: Vec<f64> = vec![0.0; corners.len() + 1];
+    for (k, side) in (0_u32..).zip(points.windows(2)) {
+        parts[corners.partition_point(|&corner| corner <= k)] += long(side);
+    }
+    parts
+}
+
 /// The loops of a chart as images of the curves, the outer one first.
 fn pieces(
     chart: &Chart,
@@ -404,7 +427,7 @@ mod tests {
             let domain = &found.domain;
             let own = domain.curves.iter().enumerate().filter(|(k, curve)| curve.first.index() == *k).count();
             assert_eq!((domain.faces.len(), own), (faces, curves));
-            assert!(found.table(&implied_sizes(&mesh)).is_ok());
+            assert!(found.table(&implied_sizes(&mesh, None)).is_ok());
         }
         assert!(surface(&torus(30, 20), &names, ANGLE, StretchBound::default(), &mut Nobody).is_ok());
     }

@@ -6,6 +6,7 @@ mod place;
 mod formula;
 mod boundary_layer;
 mod curvature;
+pub(in crate::core) mod fitting;
 mod table;
 mod forced;
 mod gap;

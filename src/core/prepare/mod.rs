@@ -17,6 +17,7 @@ pub use spacing::{Forced, MirrorLine, NarrowGaps, Spacing};
 
 use crate::core::background::Adapted;
 use crate::core::case::{Case, DomainSource};
+use crate::core::discrete::relaxing::Ball;
 use crate::core::fault::{Fault, FaultKind};
 use crate::core::geometry::{Domain, complex};
 use crate::core::kernel::predicates::firm;
@@ -43,22 +44,34 @@ pub struct Background {
     pub spacing: Spacing,
     /// The numbers of segments of the curves that close the half of a symmetric domain along its mirror line.
     pub mirror_line: Vec<u32>,
+    /// Whether it lies on a noisy surface, which may be relaxed.
+    pub is_noisy: bool,
 }
 
 impl Background {
     /// A mesh whose triangles are given.
     fn given(mesh: Mesh, sizing: Sizing, names: Names) -> Background {
         let (adapted, spacing) = (Adapted::default(), Spacing::default());
-        Background { mesh, sizing, names, adapted, repairs: Vec::new(), spacing, mirror_line: Vec::new() }
+        let (repairs, mirror_line) = (Vec::new(), Vec::new());
+        Background { mesh, sizing, names, adapted, repairs, spacing, mirror_line, is_noisy: false }
     }
 }
 
-/// Makes the background mesh of a case. In a symmetric domain the curves of [`Background::mirror_line`] get so many
-/// segments `more` than their sizes ask for, in their order; negative: fewer.
+/// What a conversion that was tried asks the background to be.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Trial<'a> {
+    /// In a symmetric domain, so many segments more than their sizes ask for get the curves of
+    /// [`Background::mirror_line`], in their order; negative: fewer.
+    pub more: &'a [i32],
+    /// Where the surface of a given mesh is relaxed.
+    pub relaxed: &'a [Ball],
+}
+
+/// Makes the background mesh of a case.
 ///
 /// # Errors
 /// Faults of the case's geometry, metric or mesh.
-pub fn background_with(case: &Case, more: &[i32], watch: &mut dyn Watch) -> Result<Background, Fault> {
+pub fn background_with(case: &Case, trial: Trial<'_>, watch: &mut dyn Watch) -> Result<Background, Fault> {
     let has_curves = matches!(case.domain, DomainSource::Curves { .. } | DomainSource::Surfaces(_));
     if !has_curves && !case.parameters.layered_loops.is_empty() {
         return Err(Fault::new("layered_loops names curves, but the case has none")
@@ -72,7 +85,7 @@ pub fn background_with(case: &Case, more: &[i32], watch: &mut dyn Watch) -> Resu
     }
     let whole = |mut domain: Domain| {
         domain.limit_chords(&shape_limits(case), &|_| true);
-        from_domain(case, domain, None, FileLines::default(), more, watch)
+        from_domain(case, domain, None, FileLines::default(), trial.more, watch)
     };
     let (made, kind) = match &case.domain {
         DomainSource::Curves { curves, faces } => {
@@ -83,7 +96,9 @@ pub fn background_with(case: &Case, more: &[i32], watch: &mut dyn Watch) -> Resu
         DomainSource::Elements { points, triangles, quads } => {
             (from_elements(case, points, triangles, quads), FaultKind::Mesh)
         }
-        DomainSource::Mesh { source, taking } => (from_mesh(case, source, taking, watch), FaultKind::Mesh),
+        DomainSource::Mesh { source, taking } => {
+            (from_mesh(case, source, taking, trial.relaxed, watch), FaultKind::Mesh)
+        }
     };
     let sound = made.and_then(|made| refuse_needles(&made.mesh).map(|()| made));
     let mut made = sound.map_err(|fault| fault.of_kind(kind))?;
@@ -182,7 +197,7 @@ mod tests {
     #[test]
     fn bounded_sizes_are_the_same_on_both_sides_of_a_curve_between_faces() {
         let case = Case::parse(TWO_SQUARES, "two", "two.toml", Path::new("")).unwrap();
-        let made = background_with(&case, &[], &mut Nobody).unwrap();
+        let made = background_with(&case, Trial::default(), &mut Nobody).unwrap();
         let size = |x: f64, y: f64| made.sizing.metric(DVec2::new(x, y)).unwrap().min_size();
         for k in 1..40 {
             let y = f64::from(k) / 40.0;

@@ -110,7 +110,16 @@ pub(super) fn from_domain(
     Repair::JoinedEnd.report(domain.joined_ends, &mut repairs);
     Repair::ShapedCurve.report(shaped, &mut repairs);
     let mirror_line = half.map_or_else(Vec::new, |half| half.segments(&made.divided.chains));
-    Ok(Background { mesh: made.mesh, sizing, names, adapted: made.adapted, repairs, spacing, mirror_line })
+    Ok(Background {
+        mesh: made.mesh,
+        sizing,
+        names,
+        adapted: made.adapted,
+        repairs,
+        spacing,
+        mirror_line,
+        is_noisy: false,
+    })
 }
 
 /// The groups of the faces of a domain, by name.

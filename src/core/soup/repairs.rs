@@ -24,10 +24,15 @@ pub(in crate::core) enum Repair {
     DividedSide,
     RepeatedPoint,
     JoinedEnd,
+    NoisyFold,
+    RelaxedPoint,
 }
 
 /// Why sides of triangles are divided.
 const EVEN: &str = "divided to make triangle counts even";
+
+/// Why points are moved.
+const RELAXED: &str = "moved to the mean of those around, where quadrilaterals would fold";
 
 impl Repair {
     /// What was repaired, singular and plural, and how.
@@ -53,6 +58,8 @@ impl Repair {
             Repair::DividedSegment => ["boundary segment", "boundary segments", EVEN],
             Repair::RepeatedPoint => ["repeated point of a polyline", "repeated points of polylines", "merged"],
             Repair::JoinedEnd => ["end of a curve", "ends of curves", "moved to where another one ends"],
+            Repair::NoisyFold => ["folded edge", "folded edges", "taken as noise, not kept"],
+            Repair::RelaxedPoint => ["point of the noisy surface", "points of the noisy surface", RELAXED],
             Repair::DividedSide => ["side of a triangle", "sides of triangles", "divided to make counts even"],
         }
     }

@@ -14,6 +14,7 @@ use crate::core::geometry::{ComplexSpec, FaceSpec, SpaceCurveSpec, SurfaceFaceSp
 use crate::core::kernel::box_tree::extent;
 use crate::core::kernel::decimal::number;
 use crate::core::kernel::worded::worded;
+use crate::core::metric::fitting::short_edge;
 use crate::core::progress::Pace;
 use crate::core::soup::{NOT_READ, times};
 
@@ -153,7 +154,9 @@ fn read_exchange(name: &str, bytes: &[u8], options: &StepOptions, pace: &dyn Pac
     let used: BTreeSet<usize> = spec.faces.iter().map(|&number| topology.faces[number].body).collect();
     let mut complex = spec.complex;
     complex.tolerance = (tolerance > 0.0).then_some(tolerance);
-    let short_edge = short_edge(&topology, size);
+    let used_edges: BTreeSet<usize> =
+        topology.faces.iter().flat_map(|face| &face.loops).flatten().map(|step| step.0).collect();
+    let short_edge = short_edge(used_edges.into_iter().map(|edge| topology.edges[edge].length()), size);
     let diagonal = if size > 0.0 { size } else { size_of_surfaces(&complex) };
     let bodies_used = used.len();
     Ok(Part {
@@ -165,15 +168,6 @@ fn read_exchange(name: &str, bytes: &[u8], options: &StepOptions, pace: &dyn Pac
         bodies: bodies_used,
         told,
     })
-}
-
-/// The length below which a tenth of the edges are; tiny ones count as the two hundredth part of the diagonal.
-fn short_edge(topology: &Topology, size: f64) -> f64 {
-    let used: BTreeSet<usize> =
-        topology.faces.iter().flat_map(|face| &face.loops).flatten().map(|step| step.0).collect();
-    let mut lengths: Vec<f64> = used.into_iter().map(|edge| topology.edges[edge].length().max(size / 200.0)).collect();
-    lengths.sort_by(f64::total_cmp);
-    lengths.get(lengths.len() / 10).copied().unwrap_or(f64::INFINITY)
 }
 
 /// Refuses faces that cannot be taken, unless they are to be skipped and others are left.

@@ -18,6 +18,7 @@ use crate::core::case::ImportOptions;
 use crate::core::discrete::census::count_of;
 use crate::core::discrete::chart::charts;
 use crate::core::discrete::features::{features, with_lines};
+use crate::core::discrete::fitness::Fitness;
 use crate::core::discrete::repair::{repair, unrepaired};
 use crate::core::discrete::{Census, Division, Edges, Feature, Repaired, StretchBound, Triangles};
 use crate::core::fault::Fault;
@@ -44,6 +45,8 @@ pub struct Loaded {
     pub is_plane: bool,
     /// Whether sizes are given at its points.
     pub has_metric: bool,
+    /// Why its triangles only draw a shape, if they do.
+    pub drawn: Option<String>,
     /// How many regions it has.
     pub regions: usize,
     /// Whether it has named groups.
@@ -222,7 +225,6 @@ fn load(path: &Path, options: &ImportOptions, voice: &mut Voice) -> Result<Loade
             (nothing, Some(fault))
         }
     };
-    drop(file);
     found.repairs.append(&mut told_of_file);
     let part = part.map(|(facts, told)| {
         found.repairs = told;
@@ -230,6 +232,9 @@ fn load(path: &Path, options: &ImportOptions, voice: &mut Voice) -> Result<Loade
     });
     let edges = Edges::of(&found.mesh.triangles);
     voice.cancel.check()?;
+    // As the conversion judges it.
+    let drawn = if part.is_some() { None } else { Fitness::reason_of(&file, &found.mesh, &voice.cancel)? };
+    drop(file);
     let census = Census::of(&found.mesh, &edges);
     let points = &found.mesh.points;
     let length = |edge: usize| {
@@ -247,6 +252,7 @@ fn load(path: &Path, options: &ImportOptions, voice: &mut Voice) -> Result<Loade
         census,
         is_plane,
         has_metric,
+        drawn,
         regions,
         has_groups,
         repairs,

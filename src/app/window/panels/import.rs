@@ -234,6 +234,11 @@ fn used(ui: &mut Ui, options: &mut ImportOptions, import: &Import, palette: &Pal
             }
         });
     }
+    if let Some(reason) = import.loaded.as_ref().and_then(|loaded| loaded.drawn.as_ref()) {
+        row(ui, "", "Why it is a shape by default", palette, |ui| {
+            ui.add(egui::Label::new(note(format!("a shape: {reason}"), palette)).wrap());
+        });
+    }
     if now == MeshUse::Triangles {
         let tip = "Quadrilaterals need an even number of sides around the mesh and around each hole. If the number is \
                    odd, the longest side is divided in two; otherwise such a mesh is refused (--split-odd)";
@@ -253,6 +258,7 @@ fn sizes(ui: &mut Ui, options: &mut ImportOptions, import: &Import, dragging: &m
     let own = match (&loaded.part, loaded.has_metric) {
         (Some(_), _) => "by its curvature and edges",
         (None, true) => "as given in the mesh",
+        (None, false) if loaded.drawn.is_some() && import.used() == MeshUse::Shape => "as fits its shape",
         (None, false) => "as its triangles",
     };
     let mut wanted = before;
