@@ -9,6 +9,7 @@ use super::progress::Progress;
 use super::{FALLS_SHORT, complain};
 use crate::core::fault::Fault;
 use crate::core::formats::Format;
+use crate::core::progress::Watch;
 use crate::core::soup::soundness::examine;
 use crate::core::soup::{Allow, Soundness};
 
@@ -23,13 +24,15 @@ pub(super) fn check(arguments: &CheckArguments) -> Result<ExitCode, Fault> {
             .remedy("Name it, for example --from msh"));
     }
     let mut progress = Progress::new(arguments.quiet);
-    let mesh = input::read_mesh(name, from, &mut progress)?.ok_or_else(|| {
+    let mut mesh = input::read_mesh(name, from, &mut progress)?.ok_or_else(|| {
         let known = Format::ALL.map(|format| format!(".{}", format.extension())).join(", ");
         Fault::new("This is not a mesh, and only meshes can be checked")
             .at(name)
             .remedy(format!("Name a file of one of: {known}"))
     })?;
-    let found = examine(&mesh);
+    let welded = mesh.weld(arguments.weld, &progress.cancel()).map_err(|fault| fault.at(name))?;
+    let mut found = examine(&mesh);
+    welded.report(&mut found.repairs);
     progress.finish();
     if let Some(target) = &arguments.report {
         let json = serde_json::to_string_pretty(&found).expect("JSON can express all findings");
@@ -67,7 +70,7 @@ fn facts(name: &str, found: &Soundness) -> String {
         found.euler,
         found.area
     );
-    for told in &found.not_read {
+    for told in found.repairs.iter().chain(&found.not_read) {
         text.push_str(told);
         text.push('\n');
     }

@@ -10,13 +10,14 @@ use super::figure::FigureOptions;
 use super::figure::every::Every;
 #[cfg(feature = "window")]
 use super::film::AnimateArguments;
-use super::input::{InputFormat, Stops, Until, input_format, mesh_format, series, setting, stops, until};
+use super::input::{InputFormat, Stops, Until, input_format, mesh_format, series, setting, stops, until, weld};
 use super::output::Target;
 use crate::core::fault::Fault;
 use crate::core::formats::Format;
 use crate::core::question::Series;
 use crate::core::record::report::figures::{FIGURES, Figure};
 use crate::core::run::Run;
+use crate::core::soup::Weld;
 use mesh::MeshArguments;
 
 mod mesh;
@@ -236,6 +237,9 @@ pub(super) struct CheckArguments {
     /// Allow edges of more than two elements (surfaces that meet in a curve)
     #[arg(long)]
     pub branching: bool,
+    /// Merge points of borders first: up to this distance, none (0), or those far below the edges there (auto)
+    #[arg(long, value_name = "DISTANCE|auto|0", value_parser = weld, default_value = Weld::AUTO, hide_default_value = true)]
+    pub weld: Weld,
     /// Write the findings as JSON, or - for standard output
     #[arg(long, value_name = "FILE")]
     pub report: Option<Target>,

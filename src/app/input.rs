@@ -22,7 +22,7 @@ use crate::core::progress::{Nobody, Reading, Watch};
 use crate::core::question::Series;
 use crate::core::record::{figure, run_file};
 use crate::core::run::{Run, Shown};
-use crate::core::soup::MeshFile;
+use crate::core::soup::{MeshFile, Weld};
 #[cfg(feature = "window")]
 use crate::core::step::Part;
 use crate::core::step::{self, Unit};
@@ -77,6 +77,13 @@ pub(super) fn unit(text: &str) -> Result<Unit, String> {
 pub(super) fn length(text: &str) -> Result<f64, String> {
     let found: Option<f64> = text.parse().ok().filter(|length: &f64| length.is_finite() && *length > 0.0);
     found.ok_or_else(|| "write a positive number".to_owned())
+}
+
+/// Parses `--weld`.
+pub(super) fn weld(text: &str) -> Result<Weld, String> {
+    let distance = || text.parse().ok().filter(|far: &f64| far.is_finite() && *far >= 0.0).map(Weld::Within);
+    let found = if text == Weld::AUTO { Some(Weld::Auto) } else { distance() };
+    found.ok_or_else(|| "write a distance, 0 or auto".to_owned())
 }
 
 /// Parses `--predict`.

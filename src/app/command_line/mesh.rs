@@ -2,9 +2,9 @@
 
 use clap::Args;
 
-use crate::app::input::{length, mesh_use, unit};
+use crate::app::input::{length, mesh_use, unit, weld};
 use crate::core::case::{ImportOptions, MeshUse};
-use crate::core::soup::Ignored;
+use crate::core::soup::{Ignored, Weld};
 use crate::core::step::{StepOptions, Unit};
 
 /// How a mesh is imported.
@@ -37,6 +37,9 @@ pub(in crate::app) struct MeshArguments {
     /// Read MESH as if it had no groups, or not those of these names
     #[arg(long, value_name = "NAME,...", num_args = 0..=1, require_equals = true, default_missing_value = "")]
     ignore_groups: Option<String>,
+    /// Merge points of borders of MESH up to this distance, none (0), or those far below the edges there (auto)
+    #[arg(long, value_name = "DISTANCE|auto|0", value_parser = weld, default_value = Weld::AUTO, hide_default_value = true)]
+    weld: Weld,
     /// Unit of the coordinates of STEP: mm, cm, m, um, in, ft [default: that of the file]
     #[arg(long, value_name = "UNIT", value_parser = unit)]
     unit: Option<Unit>,
@@ -69,6 +72,7 @@ impl MeshArguments {
             scale,
             chord,
             ignore_groups,
+            weld: self.weld,
             step: StepOptions { unit: self.unit, tolerance: self.tolerance, skip_bad_faces: self.skip_bad_faces },
         }
     }
@@ -92,6 +96,7 @@ impl MeshArguments {
                 "" => "--ignore-groups".to_owned(),
                 names => format!("--ignore-groups={names}"),
             }),
+            (self.weld != Weld::Auto).then(|| format!("--weld={}", self.weld.written())),
             self.unit.map(|unit| format!("--unit={}", unit.word())),
             number("tolerance", self.tolerance),
             self.skip_bad_faces.then(|| "--skip-bad-faces".to_owned()),

@@ -17,7 +17,7 @@ use crate::app::input;
 pub use crate::core::case::ImportOptions;
 use crate::core::case::{MeshUse, Taking};
 use crate::core::fault::Fault;
-use crate::core::soup::Ignored;
+use crate::core::soup::{Ignored, Weld};
 use crate::core::step::{StepOptions, is_step};
 
 /// How many changes can be undone.
@@ -45,7 +45,7 @@ pub struct Import {
     pub overrides: Overrides,
     preview: Preview,
     /// The options with which the file was read.
-    read_with: (Ignored, StepOptions),
+    read_with: (Ignored, Weld, StepOptions),
     wake: Wake,
     /// The mesh with its repairs, once it has been read.
     pub loaded: Option<Arc<Loaded>>,
@@ -183,7 +183,7 @@ impl Import {
     /// mesh cannot be read, if that has turned out.
     pub fn look(&mut self, dark: bool) -> Option<Fault> {
         if self.read_with != read_with(&self.options) {
-            // The repair depends on the groups, and a part on its unit.
+            // The repair depends on the groups and on what is merged, and a part on its unit.
             self.read_with = read_with(&self.options);
             self.preview = Preview::of(self.path.clone(), self.options.clone(), self.wake.clone());
             (self.loaded, self.shown, self.wanted, self.refused) = (None, None, None, None);
@@ -226,8 +226,8 @@ impl Import {
 }
 
 /// The options that a file is read with.
-fn read_with(options: &ImportOptions) -> (Ignored, StepOptions) {
-    (options.ignore_groups.clone(), options.step)
+fn read_with(options: &ImportOptions) -> (Ignored, Weld, StepOptions) {
+    (options.ignore_groups.clone(), options.weld.before_scaling(options.scale.unwrap_or(1.0)), options.step)
 }
 
 #[cfg(test)]

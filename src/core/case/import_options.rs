@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use super::{Case, DomainSource, MeshSource, MeshUse, VERSION};
 use crate::core::fault::Fault;
-use crate::core::soup::Ignored;
+use crate::core::soup::{Ignored, Weld};
 use crate::core::step::StepOptions;
 
 /// With [`ImportOptions::curvature`], the smallest size is [`ImportOptions::mesh_size`] divided by this.
@@ -32,6 +32,8 @@ pub struct ImportOptions {
     pub chord: Option<f64>,
     /// The groups of the mesh that are ignored.
     pub ignore_groups: Ignored,
+    /// Which points of the mesh are merged.
+    pub weld: Weld,
     /// How a CAD file is read.
     pub step: StepOptions,
 }
@@ -60,6 +62,9 @@ impl ImportOptions {
                 }
             },
         );
+        if let Weld::Within(distance) = self.weld {
+            line("weld", number(Some(distance)));
+        }
         if let Some(h) = self.mesh_size {
             let metric = match self.curvature {
                 None => format!("[[metric]]\nkind = \"uniform\"\nh = {h:?}"),

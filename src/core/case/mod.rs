@@ -11,7 +11,7 @@ mod surfaces;
 mod elements;
 mod metric;
 mod points;
-mod taking;
+pub(in crate::core) mod taking;
 mod import_options;
 mod step_part;
 pub mod built_in;
@@ -178,6 +178,7 @@ impl Case {
             "feature_angle",
             "chart_stretch",
             "scale",
+            "weld",
         ])?;
         let word = |key| table.get(key).map(|v| v.text()).transpose();
         let domain = domain(&table, folder)?;
@@ -305,7 +306,7 @@ fn domain(table: &Table<'_>, folder: &Path) -> Result<DomainSource, Fault> {
         let source = MeshSource::File { path, sol: file("sol")? };
         return Ok(DomainSource::Mesh { source, taking: taking::taking(table)? });
     }
-    for key in ["sol", "use", "feature_angle", "chart_stretch", "scale", "ignore_groups"] {
+    for key in ["sol", "use", "feature_angle", "chart_stretch", "scale", "ignore_groups", "weld"] {
         if let Some(value) = table.get(key) {
             return Err(value.fault(format!("{key} is given without mesh")).remedy("Write mesh = \"...\" too"));
         }

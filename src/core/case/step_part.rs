@@ -33,7 +33,7 @@ impl ImportOptions {
     /// # Errors
     /// The first of them, with what to do instead.
     pub fn check_for_step(&self) -> Result<(), Fault> {
-        let for_meshes = ["use", "split_odd", "feature_angle", "chart_stretch", "scale", "ignore_groups"];
+        let for_meshes = ["use", "split_odd", "feature_angle", "chart_stretch", "scale", "ignore_groups", "weld"];
         let Some((key, _)) = self.lines().into_iter().find(|line| for_meshes.contains(&line.0)) else { return Ok(()) };
         let option = format!("--{}", key.replace('_', "-"));
         let remedy = if key == "scale" { "Give the unit that you want: --unit m" } else { "Leave it out" };

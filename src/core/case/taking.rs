@@ -8,7 +8,7 @@ use crate::core::discrete::StretchBound;
 use crate::core::discrete::features::ANGLE;
 use crate::core::fault::Fault;
 use crate::core::kernel::Metric3;
-use crate::core::soup::{Ignored, MeshFile};
+use crate::core::soup::{Ignored, MeshFile, Weld};
 
 /// Where a mesh is.
 #[derive(Clone, Debug, PartialEq)]
@@ -63,6 +63,8 @@ pub struct Taking {
     pub chart_stretch: f64,
     /// Factor for all coordinates.
     pub scale: f64,
+    /// Which of its points are merged; a distance is in the unit of the scaled mesh.
+    pub weld: Weld,
 }
 
 impl Taking {
@@ -76,7 +78,13 @@ impl Taking {
 
 impl Default for Taking {
     fn default() -> Self {
-        Taking { used: None, feature_angle: ANGLE, chart_stretch: StretchBound::default().shape, scale: 1.0 }
+        Taking {
+            used: None,
+            feature_angle: ANGLE,
+            chart_stretch: StretchBound::default().shape,
+            scale: 1.0,
+            weld: Weld::Auto,
+        }
     }
 }
 
@@ -129,7 +137,18 @@ pub(super) fn taking(table: &Table<'_>) -> Result<Taking, Fault> {
     taking.feature_angle = degrees.to_radians();
     taking.chart_stretch = between("chart_stretch", taking.chart_stretch, Taking::STRETCHES, "a stretch", "")?;
     taking.scale = between("scale", 1.0, Taking::SCALES, "a factor", "")?;
+    taking.weld = table.get("weld").map_or(Ok(Weld::Auto), |value| weld(&value))?;
     Ok(taking)
+}
+
+/// Reads which points are merged.
+pub(in crate::core) fn weld(value: &Value<'_>) -> Result<Weld, Fault> {
+    let wrong = || value.wrong("a distance, 0 or \"auto\"", "weld = 0.001");
+    match (value.text(), value.number()) {
+        (Ok(Weld::AUTO), _) => Ok(Weld::Auto),
+        (_, Ok(distance)) if distance >= 0.0 => Ok(Weld::Within(distance)),
+        _ => Err(wrong()),
+    }
 }
 
 /// Reads the groups that are ignored: all or none, or a list of names.

@@ -22,7 +22,7 @@ use crate::core::kernel::Metric2;
 use crate::core::mesh::{Embedding, Mesh, Names};
 use crate::core::metric::{Field, FieldSpec, MetricSource, Sizing};
 use crate::core::progress::{Stage, Watch};
-use crate::core::soup::{MeshFile, Repair};
+use crate::core::soup::{MeshFile, Repair, Welded};
 
 /// The background of a given mesh: its own triangles (the default in the plane), or its shape (the default in space).
 /// The metric is that of the case's fields; without fields, that given at its nodes or implied by its triangles.
@@ -41,12 +41,21 @@ pub(super) fn from_mesh(
             (MeshFile::clone(mesh), place)
         }
     };
+    // By the digits of the file, before it is scaled.
+    let welded = file.weld(taking.weld.before_scaling(taking.scale), &watch.cancel()).map_err(|fault| match fault {
+        stop if stop.is_stop() => stop,
+        fault => fault.at(place.clone()),
+    })?;
+    let welded = welded.scaled(taking.scale);
     taking.scale(&mut file);
     file.ignore_groups(&case.ignore_groups).map_err(|fault| fault.at(place.clone()))?;
     if !file.is_plane() || taking.used == Some(MeshUse::Shape) {
-        return from_surface(case, &file, &place, taking, watch);
+        return from_surface(case, &file, &place, taking, welded, watch);
     }
     let mut imported = import(&file, case.split_odd).map_err(|fault| fault.at(place.clone()))?;
+    let mut repairs = Vec::new();
+    welded.report(&mut repairs);
+    imported.repairs.splice(0..0, repairs);
     imported.repairs.append(&mut file.not_read());
     let set = &imported.set;
     allow_triangles(set.triangles.len(), watch)?;
@@ -91,11 +100,15 @@ fn from_surface(
     file: &MeshFile,
     place: &str,
     taking: &Taking,
+    welded: Welded,
     watch: &mut dyn Watch,
 ) -> Result<Background, Fault> {
     // Faults of the case's fields have their own place.
     let here = |fault: Fault| if fault.is_stop() { fault } else { fault.at(place) };
     let Repaired { mesh, copied, regions, lines, points, mut repairs } = repair(file, watch).map_err(here)?;
+    let mut first = Vec::new();
+    welded.report(&mut first);
+    repairs.splice(0..0, first);
     let surface = surface(&mesh, &regions, taking.feature_angle, taking.bound(), watch).map_err(here)?;
     let converts = taking.used == Some(MeshUse::Triangles);
     let mut fields = Vec::new();

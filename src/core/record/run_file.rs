@@ -7,6 +7,7 @@
 //! [case]
 //! name = "plate"
 //! text = '''...'''               # the case file itself; absent for a mesh without one
+//! weld = "auto"                  # which points of its mesh are merged; where neither this nor the text says, none
 //! mesh = { path = "plate.msh", fingerprint = "6c62..." }   # its mesh; likewise sol
 //!
 //! [parameters]                   # those that differ from the case's
@@ -33,6 +34,7 @@
 mod alone;
 mod figure;
 mod inputs;
+mod welding;
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -117,7 +119,7 @@ fn parsed(text: &str, file: &str, folder: &Path) -> Result<Run, Fault> {
 }
 
 fn case(table: &Table<'_>, file: &str, folder: &Path) -> Result<Case, Fault> {
-    table.only(&["name", "text", "split_odd", "mesh", "sol"])?;
+    table.only(&["name", "text", "split_odd", "weld", "mesh", "sol"])?;
     let name = table.need("name", "\"plate\"")?.text()?;
     let mesh = table.get("mesh").map(|value| input_file(&value, folder)).transpose()?;
     let sol = table.get("sol").map(|value| input_file(&value, folder)).transpose()?;
@@ -137,6 +139,7 @@ fn case(table: &Table<'_>, file: &str, folder: &Path) -> Result<Case, Fault> {
     if let Some(value) = table.get("split_odd") {
         case.split_odd = value.flag()?;
     }
+    welding::set(&mut case, table)?;
     Ok(case)
 }
 
@@ -287,6 +290,7 @@ fn text(run: &Run, files: &InputFiles, folder: &Path) -> String {
     if run.case.split_odd != own.as_ref().is_some_and(|case| case.split_odd) {
         line(format_args!("split_odd = {}\n", run.case.split_odd));
     }
+    line(format_args!("{}", welding::line(&run.case)));
     let folder = std::path::absolute(folder).ok();
     for (key, input) in [("mesh", &files.mesh), ("sol", &files.sol)] {
         let Some(InputFile { path, fingerprint }) = input else { continue };

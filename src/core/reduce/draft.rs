@@ -5,14 +5,14 @@ use std::path::Path;
 use std::sync::Arc;
 
 use super::document::{Keys, Node};
-use crate::core::case::{Case, DomainSource, MeshSource, ParameterKind, Parameters, VERSION};
+use crate::core::case::{Case, DomainSource, MeshSource, ParameterKind, Parameters, Taking, VERSION};
 use crate::core::fault::Fault;
 use crate::core::formats::format::read_mesh_watched;
 use crate::core::kernel::Fingerprint;
 use crate::core::kernel::number::{counted, grouped};
 use crate::core::progress::Watch;
 use crate::core::run::{Edit, Run};
-use crate::core::soup::MeshFile;
+use crate::core::soup::{MeshFile, Weld};
 
 /// A case that can be made smaller.
 #[derive(Clone, Debug, PartialEq)]
@@ -39,6 +39,10 @@ impl Draft {
         }
         if case.split_odd {
             keys.set("split_odd", Node::Bare("true".to_owned()));
+        }
+        // The text of an old run does not say that no points are merged.
+        if let DomainSource::Mesh { taking: Taking { weld: Weld::Within(distance), .. }, .. } = case.domain {
+            keys.set("weld", Node::Bare(format!("{distance:?}")));
         }
         let parameters = Keys(changed_parameters(&run.parameters));
         if !parameters.0.is_empty() {

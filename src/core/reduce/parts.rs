@@ -10,7 +10,7 @@ use super::search::Search;
 use crate::core::fault::Fault;
 
 /// Keys of a case that have a default.
-pub(super) const OPTIONS: [&str; 12] = [
+pub(super) const OPTIONS: [&str; 13] = [
     "gradation",
     "corner_angle",
     "tolerance",
@@ -23,6 +23,7 @@ pub(super) const OPTIONS: [&str; 12] = [
     "feature_angle",
     "chart_stretch",
     "scale",
+    "weld",
 ];
 
 /// The lists of curves within a face that can be left out one by one.

@@ -1,5 +1,5 @@
 //! A mesh as stored in a file: a soup of points and polygons without connectivity. How the file numbers its elements,
-//! triangulation of polygons, welding of equal points, and the validity check.
+//! triangulation of polygons, welding of points, and the validity check.
 
 pub mod mesh_file;
 mod counting;
@@ -19,3 +19,4 @@ pub(in crate::core) use not_read::{CELL_DATA, EMPTY_GROUP, POINT_DATA, times};
 pub(in crate::core) use repairs::Repair;
 pub use soundness::{Allow, Defect, Soundness};
 pub(in crate::core) use weld::Welder;
+pub use weld::{Weld, Welded};

@@ -121,6 +121,8 @@ pub struct Soundness {
     pub planar: bool,
     /// Area; for a curved quadrilateral, half the length of its diagonals' cross product.
     pub area: f64,
+    /// What was repaired before, as phrases: points that were merged.
+    pub repairs: Vec<String>,
     /// What the file has and is not read ([`MeshFile::not_read`]).
     pub not_read: Vec<String>,
     /// The defects, by kind.

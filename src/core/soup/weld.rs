@@ -1,15 +1,55 @@
-//! Merges coincident points: for formats that store each triangle with its own corners (STL), or that repeat a point
-//! where its normal or texture coordinate differs (glTF).
+//! Merges points: coincident ones for formats that store each triangle with its own corners (STL), or that repeat a
+//! point where its normal or texture coordinate differs (glTF); and those of a mesh whose coordinates differ although
+//! they are meant to be one.
+
+pub mod borders;
+mod mesh;
+mod precision;
 
 use std::hash::BuildHasher;
 
 use glam::DVec3;
 use rustc_hash::FxBuildHasher;
 
+use crate::core::kernel::Shortest;
 use crate::core::progress::Cancel;
+pub use mesh::Welded;
 
 /// Relative tolerance for formats in single precision: a few rounding errors of the largest coordinate.
 pub const SINGLE: f64 = 4.0 * f32::EPSILON as f64;
+
+/// Which points of a mesh are merged besides those at exactly one place.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Weld {
+    /// Points of borders that are far closer to each other than the edges there are long, with a clear gap between
+    /// these distances and all others (docs/files.md, "Near points").
+    #[default]
+    Auto,
+    /// Points of borders up to this distance; none for 0.
+    Within(f64),
+}
+
+impl Weld {
+    /// The word for [`Weld::Auto`], on the command line and in cases.
+    pub const AUTO: &str = "auto";
+
+    /// The value as a case and the command line write it.
+    pub fn written(self) -> String {
+        match self {
+            Weld::Auto => Weld::AUTO.to_owned(),
+            Weld::Within(distance) => Shortest(distance).to_string(),
+        }
+    }
+
+    /// The same for a mesh whose coordinates will be multiplied by `scale`.
+    #[must_use]
+    pub fn before_scaling(self, scale: f64) -> Weld {
+        match self {
+            Weld::Auto => Weld::Auto,
+            Weld::Within(distance) => Weld::Within(distance / scale),
+        }
+    }
+}
 
 /// Points welded between two checks for cancellation.
 const BATCH: usize = 1 << 14;
@@ -45,6 +85,11 @@ impl Welder {
 
     /// The first kept point within the tolerance of `p`.
     fn find(&self, kept: &[DVec3], p: DVec3) -> Option<u32> {
+        self.find_where(kept, p, &mut |_| true)
+    }
+
+    /// The first kept point within the tolerance of `p` that may be merged with it.
+    fn find_where(&self, kept: &[DVec3], p: DVec3, may: &mut dyn FnMut(u32) -> bool) -> Option<u32> {
         // Clamped, since the largest finite number plus the tolerance may be infinite, which has no cell.
         let ends = [p - self.tolerance, p + self.tolerance];
         let [low, high] = ends.map(|q| self.cell(q.clamp(DVec3::MIN, DVec3::MAX)));
@@ -57,7 +102,8 @@ impl Welder {
                     while at != u32::MAX {
                         let q = kept[at as usize];
                         // A bucket may hold points of other cells.
-                        if q.distance(p) <= self.tolerance && found.is_none_or(|f| at < f) && self.cell(q) == cell {
+                        let is_near = q.distance(p) <= self.tolerance && found.is_none_or(|f| at < f);
+                        if is_near && self.cell(q) == cell && may(at) {
                             found = Some(at);
                         }
                         at = self.before[at as usize];

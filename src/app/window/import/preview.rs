@@ -24,7 +24,7 @@ use crate::core::fault::Fault;
 use crate::core::formats::format::read_mesh_watched;
 use crate::core::progress::{Cancel, Stage, Watch};
 use crate::core::record::Export;
-use crate::core::soup::MeshFile;
+use crate::core::soup::{MeshFile, Weld};
 use crate::core::{convert, step};
 use crate::render::scene::{Given, Scene};
 
@@ -205,6 +205,12 @@ fn load(path: &Path, options: &ImportOptions, voice: &mut Voice) -> Result<Loade
     let ignored = &options.ignore_groups;
     let place = |fault: Fault| if fault.is_stop() { fault } else { fault.at(path.display().to_string()) };
     file.ignore_groups(ignored).map_err(place)?;
+    let scale = options.scale.unwrap_or(1.0);
+    // A part is what its surfaces are.
+    let weld = if part.is_none() { options.weld.before_scaling(scale) } else { Weld::Within(0.0) };
+    let welded = file.weld(weld, &voice.cancel).map_err(place)?;
+    let mut told = Vec::new();
+    welded.scaled(scale).report(&mut told);
     let (is_plane, has_metric, has_groups) = (file.is_plane(), file.metric.is_some(), !file.groups.is_empty());
     let mut not_read = file.not_read();
     let (mut found, fault) = match repair(&file, voice) {
@@ -221,6 +227,7 @@ fn load(path: &Path, options: &ImportOptions, voice: &mut Voice) -> Result<Loade
         }
     };
     drop(file);
+    found.repairs.splice(0..0, told);
     found.repairs.append(&mut not_read);
     let part = part.map(|(facts, told)| {
         found.repairs = told;

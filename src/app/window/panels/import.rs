@@ -5,6 +5,7 @@ use eframe::egui::{
     Sense, Slider, SliderClamping, Ui, Vec2, WidgetInfo,
 };
 
+mod near_points;
 mod part;
 
 use super::{choice, heading, inset, line, note, on_click};
@@ -18,7 +19,7 @@ use crate::core::case::{MeshUse, Taking};
 use crate::core::discrete::Feature;
 use crate::core::geometry::ShapeLimits;
 use crate::core::kernel::Shortest;
-use crate::core::soup::{Ignored, NOT_READ};
+use crate::core::soup::{Ignored, NOT_READ, Weld};
 use crate::render::palette::{Palette, Rgba};
 use crate::render::scene::{feature_line, seam_line};
 
@@ -166,6 +167,7 @@ fn form_of_mesh(ui: &mut Ui, options: &mut ImportOptions, import: &Import, dragg
     if has_groups || options.ignore_groups != Ignored::Nothing {
         groups(ui, options, palette);
     }
+    near_points::form(ui, options, import, dragging, palette);
     used(ui, options, import, palette);
     sizes(ui, options, import, dragging, palette);
     let charted = import.has_charts();
@@ -237,6 +239,9 @@ fn unit(ui: &mut Ui, options: &mut ImportOptions, taking: &Taking, dragging: &mu
     if scale != taking.scale {
         options.scale = unless_default(scale, 1.0);
         // Sizes are in the scaled unit.
+        if let Weld::Within(distance) = &mut options.weld {
+            *distance = rounded(*distance * scale / taking.scale);
+        }
         options.mesh_size = options.mesh_size.map(|size| rounded(size * scale / taking.scale));
     }
 }
