@@ -60,7 +60,7 @@ fn main() {
         told(&name, None, &|watch| read_mesh_watched(&path, None, watch).map(drop));
     }
     told("repair", None, &|watch| repair(&mesh, watch).map(drop));
-    let made = repair(&mesh, &mut Nobody).unwrap().mesh;
+    let made = repair(&mesh, None, &mut Nobody).unwrap().mesh;
     // A disc of a million triangles takes minutes to be laid flat; nobody waits for its end here.
     told("charts", Some(8.0), &|watch| {
         let edges = Edges::unless(&made.triangles, &watch.cancel())?;

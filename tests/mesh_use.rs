@@ -195,7 +195,7 @@ fn the_texture_of_a_file_lays_its_charts_where_it_is_one_to_one() {
     let n = 24;
     let vertical = |bytes: &[u8], seam: u32| {
         let given = read_bytes("a.obj", bytes, Format::Obj).unwrap();
-        let laid = repair(&given, &mut Nobody).unwrap();
+        let laid = repair(&given, None, &mut Nobody).unwrap();
         let edges = Edges::of(&laid.mesh.triangles);
         let features = features(&laid.mesh, &edges, ANGLE);
         let found = charts(&laid.mesh, &edges, &features, StretchBound::default(), &mut Nobody).unwrap();

@@ -140,7 +140,7 @@ fn work_that_is_ended_before_it_begins_does_nothing() {
     cancel.ask();
     let mut witness = Witness { cancel, ..Witness::default() };
     assert!(repair(&plate(4), &mut witness).unwrap_err().is_stop());
-    let mesh = repair(&plate(4), &mut Nobody).unwrap().mesh;
+    let mesh = repair(&plate(4), None, &mut Nobody).unwrap().mesh;
     let edges = Edges::of(&mesh.triangles);
     let found = features(&mesh, &edges, ANGLE);
     let charts = quadfront::core::discrete::chart::charts(&mesh, &edges, &found, Default::default(), &mut witness);

@@ -25,7 +25,7 @@ use crate::core::kernel::predicates::{firm, orient};
 use crate::core::kernel::{LogMetric3, Metric3};
 use crate::core::mesh::{Further, Named, TriangleSet};
 use crate::core::progress::Cancel;
-use crate::core::soup::{MeshFile, Repair};
+use crate::core::soup::{Borders, MeshFile, Repair};
 
 /// A triangle with a smaller ratio of height to longest side is flat (as in `predicates::firm`).
 const FLAT: f64 = 1e-7;
@@ -62,20 +62,26 @@ impl Imported {
 /// Imports a planar triangle mesh. Regions are the tags of the triangles in ascending order. A part is a set of
 /// triangles of one region that edges off the lines connect. Parts with odd numbers of triangles become even by the
 /// division of sides between parts, as few as possible, of those between two parts the longest. If that is not
-/// possible, a part is refused or, with `split_odd`, its longest boundary segment is divided.
+/// possible, a part is refused or, with `split_odd`, its longest boundary segment is divided. Points up to `joint` from
+/// a side hang on it.
 ///
 /// # Errors
 /// All that the module documentation lists, with the triangles as numbered in the file, and coordinates.
-pub fn import(file: &MeshFile, split_odd: bool) -> Result<Imported, Fault> {
+pub fn import(file: &MeshFile, split_odd: bool, joint: Option<f64>) -> Result<Imported, Fault> {
     let given = file;
     let (cut, file) = cut_to_triangles(file);
     let mut import = Import::checked(given, &file)?;
     Repair::Triangulated.report(cut, &mut import.repairs);
     import.drop_duplicates();
-    import.repair();
+    import.repair(joint);
     import.orient()?;
     import.check_edges()?;
     overlapping(given, &import.points(), &import.triangles, &import.element)?;
+    if joint.is_some() {
+        let points = import.points();
+        let borders = Borders::of(&points, import.triangles.iter().map(|t| &t[..]));
+        import.repairs.extend(borders.not_joined(false, &Cancel::default()));
+    }
     import.even_parts(split_odd)?;
     Ok(import.finish())
 }
@@ -227,7 +233,7 @@ impl<'a> Import<'a> {
 
     /// Removes flat triangles, whose corner the neighbour across the longest side receives, and connects hanging nodes
     /// to the sides on which they lie, unless there is a gap. Lines follow the divided sides.
-    fn repair(&mut self) {
+    fn repair(&mut self, joint: Option<f64>) {
         let mut mesh = Triangles {
             points: self.points(),
             triangles: std::mem::take(&mut self.triangles),
@@ -241,7 +247,7 @@ impl<'a> Import<'a> {
             let long = a.distance_squared(b).max(b.distance_squared(c)).max(c.distance_squared(a));
             a != b && b != c && c != a && orient(a, b, c).abs() < FLAT * long
         });
-        let stitched = mesh.stitch(true, &Cancel::default());
+        let stitched = mesh.stitch(true, joint, &Cancel::default());
         Repair::DegenerateTriangle.report(flat, &mut self.repairs);
         Repair::HangingPoint.report(stitched, &mut self.repairs);
         if flat + stitched > 0 && !self.lines.is_empty() {

@@ -10,7 +10,7 @@ use crate::core::fault::Fault;
 use crate::core::kernel::box_tree::extent;
 use crate::core::mesh::Named;
 use crate::core::progress::{Cancel, Stage, Watch};
-use crate::core::soup::{MeshFile, Repair};
+use crate::core::soup::{Borders, MeshFile, Repair};
 
 /// A triangle whose height is below this fraction of its longest side is degenerate,
 const FLAT: f64 = 1e-6;
@@ -41,12 +41,13 @@ pub struct Repaired {
 /// The repaired triangles of a file. Splits quadrilaterals and polygons; merges coincident points; inserts hanging
 /// points on the border; removes duplicate and degenerate triangles; orients neighbours consistently where possible,
 /// and a mesh in a plane z = constant upwards; separates parts that touch in a point. Lines in a group become those of
-/// the edges on them.
+/// the edges on them. With a `joint`, a distance, points up to there from a side hang on it, borders that end on the
+/// edges of other sheets are joined to them ([`Triangles::stitch`]), and borders that nearly touch are told.
 ///
 /// # Errors
 /// Defects without a safe repair, named by the file's numbers: no triangles; missing points or coordinates out of
 /// range; self-intersecting polygons; one-sided surfaces; overlaps in the plane. [`Fault::stopped`].
-pub fn repair(file: &MeshFile, watch: &mut dyn Watch) -> Result<Repaired, Fault> {
+pub fn repair(file: &MeshFile, joint: Option<f64>, watch: &mut dyn Watch) -> Result<Repaired, Fault> {
     let mut repairs = Vec::new();
     let cancel = watch.cancel();
     let mut begin = |step: u64| {
@@ -86,7 +87,16 @@ pub fn repair(file: &MeshFile, watch: &mut dyn Watch) -> Result<Repaired, Fault>
     let welded = mesh.weld(&cancel);
     begin(3)?;
     Repair::MergedPoint.report(welded, &mut repairs);
-    Repair::HangingPoint.report(mesh.stitch(false, &cancel), &mut repairs);
+    let branching = |mesh: &Triangles| -> Result<usize, Fault> {
+        let edges = Edges::unless(&mesh.triangles, &cancel)?;
+        Ok((0..edges.len()).filter(|&edge| edges.get(edge).sides.len() > 2).count())
+    };
+    let before = if joint.is_some() { branching(&mesh)? } else { 0 };
+    let stitched = mesh.stitch(false, joint, &cancel);
+    Repair::HangingPoint.report(stitched, &mut repairs);
+    if joint.is_some() && stitched > 0 {
+        Repair::BranchingEdge.report(branching(&mesh)?.saturating_sub(before), &mut repairs);
+    }
     begin(4)?;
     Repair::DuplicateTriangle.report(mesh.remove_duplicates(&cancel), &mut repairs);
     begin(5)?;
@@ -105,6 +115,10 @@ pub fn repair(file: &MeshFile, watch: &mut dyn Watch) -> Result<Repaired, Fault>
         let reversed = mesh.orient(&cancel);
         one_sided(given, &mesh, &Edges::unless(&mesh.triangles, &cancel)?)?;
         Repair::ReversedTriangle.report(reversed, &mut repairs);
+    }
+    if joint.is_some() {
+        let borders = Borders::of(&mesh.points, mesh.triangles.iter().map(|t| &t[..]));
+        repairs.extend(borders.not_joined(!plane, &cancel));
     }
     begin(7)?;
     let (copied, separated, pinched) = mesh.separate(&cancel);
@@ -353,7 +367,7 @@ mod tests {
         for i in (0..given.triangles.len()).step_by(3) {
             given.triangles[i].swap(0, 1);
         }
-        let found = repair(&given, &mut Nobody).unwrap();
+        let found = repair(&given, None, &mut Nobody).unwrap();
         assert_eq!(found.repairs, ["100 triangles were reversed to match neighbours".to_owned()]);
         let edges = Edges::of(&found.mesh.triangles);
         assert!(features(&found.mesh, &edges, 3.2).iter().all(|f| *f != Some(Feature::Conflict)));
@@ -375,7 +389,7 @@ mod tests {
         given.triangles.push([b, c, middle]);
         given.triangles.push([a, middle, c]);
         given.triangles.push([a, a, c]);
-        let found = repair(&given, &mut Nobody).unwrap();
+        let found = repair(&given, None, &mut Nobody).unwrap();
         assert_eq!((found.mesh.triangles.len(), border_edges(&found.mesh)), (10, 8));
         assert!(found.repairs[0].contains("degenerate"), "{:?}", found.repairs);
     }
@@ -386,12 +400,12 @@ mod tests {
         let n = given.triangles.len();
         let [a, b, c] = given.triangles[3];
         given.triangles.push([c, a, b]);
-        assert_eq!(repair(&given, &mut Nobody).unwrap().mesh.triangles.len(), n);
+        assert_eq!(repair(&given, None, &mut Nobody).unwrap().mesh.triangles.len(), n);
         given.triangles.push([0, 1, 999]);
-        assert!(repair(&given, &mut Nobody).unwrap_err().to_string().contains("point 1000"));
+        assert!(repair(&given, None, &mut Nobody).unwrap_err().to_string().contains("point 1000"));
         given.triangles.pop();
         given.points[0].y = f64::NAN;
-        assert!(repair(&given, &mut Nobody).is_err());
-        assert!(repair(&MeshFile::default(), &mut Nobody).is_err());
+        assert!(repair(&given, None, &mut Nobody).is_err());
+        assert!(repair(&MeshFile::default(), None, &mut Nobody).is_err());
     }
 }

@@ -1,5 +1,7 @@
-//! Connectivity repairs: merges coincident points, inserts hanging points into the sides on which they lie, and
-//! separates parts that touch in a point only.
+//! Connectivity repairs: merges coincident points, inserts hanging points into the sides on which they lie (also where
+//! three sheets meet), and separates parts that touch in a point only.
+
+use std::collections::BTreeSet;
 
 use glam::DVec3;
 use rstar::primitives::GeomWithData;
@@ -17,12 +19,16 @@ const COINCIDENT: f64 = 1e-9;
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 /// A point closer to a side than this fraction of the side's length hangs on it.
 pub(super) const ON_SIDE: f64 = 1e-6;
+/// At most this fraction of the side, whatever the tolerance is.
+const FAR_FROM_SIDE: f64 = 0.1;
 /// Parts that touch in a point are separated by this fraction of the size, at most by the second fraction of an edge
 /// there.
 const GAP: f64 = 1e-6;
 const GAP_OF_EDGE: f64 = 1e-2;
 /// Rounds of dividing sides on which points hang.
 const ROUNDS: usize = 8;
+
+type Tree = RTree<GeomWithData<[f64; 3], u32>>;
 
 impl Triangles {
     /// Replaces coincident points by the first of them; returns how many points are no longer used.
@@ -58,13 +64,24 @@ impl Triangles {
         [(COINCIDENT * (high - low).max_element()).max(ROUNDING * largest), largest]
     }
 
-    /// Divides border sides at the border points that hang on them, so that the two borders match; returns the number
-    /// of points. With `closed`, divides only sides along which other border sides run from end to end.
-    pub fn stitch(&mut self, closed: bool, cancel: &Cancel) -> usize {
-        let mut stitched = 0;
+    /// Divides border sides at the border points that hang on them, so that the two borders match; returns how often a
+    /// point hung on an edge. With `closed`, divides only sides along which other border sides run from end to end.
+    ///
+    /// With a `joint`, a point hangs on a side up to that distance; and unless `closed`, a border ends on a sheet where
+    /// it hangs on edges inside that, or where points inside that hang on its sides. All triangles at the edge are
+    /// divided:
+    /// ```text
+    ///   sheet      b                  b
+    ///         c    |    d        c   /|\   d
+    ///              | p              - p -
+    ///              |                 \|/
+    ///              a                  a
+    /// ```
+    pub fn stitch(&mut self, closed: bool, joint: Option<f64>, cancel: &Cancel) -> usize {
+        let mut stitched: BTreeSet<([u32; 2], u32)> = BTreeSet::new();
         // Each round divides a triangle at one of its sides.
         for _ in 0..ROUNDS {
-            let hanging = self.hanging(closed, cancel);
+            let hanging = self.hanging(closed, joint, cancel);
             if hanging.is_empty() {
                 break;
             }
@@ -75,7 +92,7 @@ impl Triangles {
                 let apex = self.triangles[t][(side as usize + 2) % 3];
                 self.forget_texture(t);
                 let along: Vec<u32> = [a].into_iter().chain(in_side).chain([b]).collect();
-                stitched += along.len() - 2;
+                stitched.extend(along[1..along.len() - 1].iter().map(|&point| ([a.min(b), a.max(b)], point)));
                 for (k, piece) in along.windows(2).enumerate() {
                     let piece = [piece[0], piece[1], apex];
                     if k == 0 {
@@ -93,33 +110,45 @@ impl Triangles {
                 }
             }
         }
-        stitched
+        stitched.len()
     }
 
-    /// Border points that hang on border sides: the side, the parameter along it, the point; ascending.
-    fn hanging(&self, closed: bool, cancel: &Cancel) -> Vec<(u32, f64, u32)> {
+    /// Points that hang on sides: the side, the parameter along it, the point; ascending. See [`Triangles::stitch`].
+    fn hanging(&self, closed: bool, joint: Option<f64>, cancel: &Cancel) -> Vec<(u32, f64, u32)> {
         let Ok(edges) = Edges::unless(&self.triangles, cancel) else { return Vec::new() };
-        let one = |e: usize| <[u32; 1]>::try_from(edges.get(e).sides).ok();
-        let sides: Vec<u32> = (0..edges.len()).filter_map(one).flatten().collect();
-        let mut points: Vec<u32> = sides.iter().flat_map(|&side| self.side(side)).collect();
-        points.sort_unstable();
-        points.dedup();
-        let places = points.iter().map(|&k| GeomWithData::new(self.points[k as usize].to_array(), k)).collect();
-        let tree: RTree<GeomWithData<[f64; 3], u32>> = RTree::bulk_load(places);
+        let (outer, inner): (Vec<usize>, Vec<usize>) =
+            (0..edges.len()).partition(|&edge| edges.get(edge).sides.len() == 1);
+        let of = |mut points: Vec<u32>| -> Tree {
+            points.sort_unstable();
+            points.dedup();
+            let place = |k: u32| GeomWithData::new(self.points[k as usize].to_array(), k);
+            RTree::bulk_load(points.into_iter().map(place).collect())
+        };
+        let border = of(outer.iter().flat_map(|&edge| edges.get(edge).ends).collect());
         let mut hanging: Vec<(u32, f64, u32)> = Vec::new();
-        for side in sides {
-            let [a, b] = self.side(side).map(|k| self.points[k as usize]);
+        let mut hang = |edge: usize, points: &Tree| {
+            let sides = edges.get(edge).sides;
+            let [a, b] = self.side(sides[0]).map(|k| self.points[k as usize]);
             let along = b - a;
-            let margin = DVec3::splat(ON_SIDE * along.length());
+            let share = ON_SIDE.max((joint.unwrap_or(0.0) / along.length()).min(FAR_FROM_SIDE));
+            let margin = DVec3::splat(share * along.length());
             let (low, high) = (a.min(b) - margin, a.max(b) + margin);
-            for place in tree.locate_in_envelope(AABB::from_corners(low.to_array(), high.to_array())) {
+            for place in points.locate_in_envelope(AABB::from_corners(low.to_array(), high.to_array())) {
                 let p = self.points[place.data as usize] - a;
                 let t = p.dot(along) / along.length_squared();
-                let own = self.triangles[side as usize / 3].contains(&place.data);
-                if !own && t > ON_SIDE && t < 1.0 - ON_SIDE && (p - t * along).length() < margin.x {
-                    hanging.push((side, t, place.data));
+                let own = sides.iter().any(|&side| self.triangles[side as usize / 3].contains(&place.data));
+                if !own && t > share && t < 1.0 - share && (p - t * along).length() < margin.x {
+                    let from_end = |side: &u32| if self.side(*side) == self.side(sides[0]) { t } else { 1.0 - t };
+                    hanging.extend(sides.iter().map(|side| (*side, from_end(side), place.data)));
                 }
             }
+        };
+        if joint.is_some() && !closed && !outer.is_empty() {
+            let all = of(self.triangles.as_flattened().to_vec());
+            outer.iter().for_each(|&edge| hang(edge, &all));
+            inner.iter().for_each(|&edge| hang(edge, &border));
+        } else {
+            outer.iter().for_each(|&edge| hang(edge, &border));
         }
         hanging.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)).then(a.2.cmp(&b.2)));
         if closed {
@@ -204,10 +233,10 @@ mod tests {
     fn hanging_points_are_inserted_into_their_sides() {
         // One border has four sides along the two of the other.
         let mut mesh = beside(plate(4, 0.0), &plate(2, 0.0), DVec3::X);
-        assert_eq!((mesh.weld(&Cancel::default()), mesh.stitch(false, &Cancel::default())), (3, 2));
+        assert_eq!((mesh.weld(&Cancel::default()), mesh.stitch(false, None, &Cancel::default())), (3, 2));
         assert_eq!(border_edges(&mesh), 16 + 8 - 4 - 2);
         let area: f64 = (0..mesh.triangles.len()).map(|t| 0.5 * mesh.area_vector(t).length()).sum();
-        assert!((area - 2.0).abs() < 1e-12 && mesh.stitch(false, &Cancel::default()) == 0);
+        assert!((area - 2.0).abs() < 1e-12 && mesh.stitch(false, None, &Cancel::default()) == 0);
     }
 
     #[test]

@@ -35,7 +35,7 @@ pub(super) fn from_elements(
         triangles: triangles.iter().copied().chain(halves).collect(),
         ..MeshFile::default()
     };
-    let imported = import(&file, false)?;
+    let imported = import(&file, false, None)?;
     if let Some(repair) = imported.repairs.first() {
         return Err(Fault::new(format!("The background needs a repair: {repair}"))
             .remedy("Correct it: a mesh in a case file is not repaired"));

@@ -52,7 +52,7 @@ pub(super) fn from_mesh(
     if !file.is_plane() || taking.used == Some(MeshUse::Shape) {
         return from_surface(case, &file, &place, taking, welded, watch);
     }
-    let mut imported = import(&file, case.split_odd).map_err(|fault| fault.at(place.clone()))?;
+    let mut imported = import(&file, case.split_odd, welded.tolerance).map_err(|fault| fault.at(place.clone()))?;
     let mut repairs = Vec::new();
     welded.report(&mut repairs);
     imported.repairs.splice(0..0, repairs);
@@ -105,7 +105,8 @@ fn from_surface(
 ) -> Result<Background, Fault> {
     // Faults of the case's fields have their own place.
     let here = |fault: Fault| if fault.is_stop() { fault } else { fault.at(place) };
-    let Repaired { mesh, copied, regions, lines, points, mut repairs } = repair(file, watch).map_err(here)?;
+    let Repaired { mesh, copied, regions, lines, points, mut repairs } =
+        repair(file, welded.tolerance, watch).map_err(here)?;
     let mut first = Vec::new();
     welded.report(&mut first);
     repairs.splice(0..0, first);

@@ -22,7 +22,7 @@ use crate::core::fault::Fault;
 use crate::core::kernel::number::{counted, grouped, size};
 use crate::core::prepare::Spacing;
 use crate::core::progress::Stage;
-use crate::core::soup::NOT_READ;
+use crate::core::soup::{NOT_JOINED, NOT_READ};
 
 /// The report of a conversion.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -243,9 +243,10 @@ fn rows_of_work(text: &mut String, repairs: &[String], spacing: &Spacing, timing
         row(text, "spacing", &phrase);
     }
     for told in repairs {
-        match told.strip_prefix(NOT_READ) {
-            Some(what) => row(text, "not read", what),
-            None => row(text, "repaired", told),
+        match (told.strip_prefix(NOT_READ), told.strip_prefix(NOT_JOINED)) {
+            (Some(what), _) => row(text, "not read", what),
+            (_, Some(what)) => row(text, "not joined", what),
+            _ => row(text, "repaired", told),
         }
     }
     if !timing.is_empty() {

@@ -19,4 +19,6 @@ pub(in crate::core) use not_read::{CELL_DATA, EMPTY_GROUP, POINT_DATA, times};
 pub(in crate::core) use repairs::Repair;
 pub use soundness::{Allow, Defect, Soundness};
 pub(in crate::core) use weld::Welder;
+pub(in crate::core) use weld::borders::Borders;
+pub use weld::borders::NOT_JOINED;
 pub use weld::{Weld, Welded};

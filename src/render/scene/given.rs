@@ -173,7 +173,7 @@ mod tests {
             quads: vec![[0, 1, 4, 3], [1, 2, 5, 4]],
             ..MeshFile::default()
         };
-        crate::core::discrete::repair::repair(&file, &mut Nobody).unwrap().mesh
+        crate::core::discrete::repair::repair(&file, None, &mut Nobody).unwrap().mesh
     }
 
     #[test]

@@ -213,7 +213,7 @@ fn load(path: &Path, options: &ImportOptions, voice: &mut Voice) -> Result<Loade
     welded.scaled(scale).report(&mut told);
     let (is_plane, has_metric, has_groups) = (file.is_plane(), file.metric.is_some(), !file.groups.is_empty());
     let mut not_read = file.not_read();
-    let (mut found, fault) = match repair(&file, voice) {
+    let (mut found, fault) = match repair(&file, welded.tolerance, voice) {
         Ok(found) => (found, None),
         Err(fault) if fault.is_stop() => return Err(fault),
         Err(fault) => {

@@ -19,7 +19,7 @@ use crate::core::case::{MeshUse, Taking};
 use crate::core::discrete::Feature;
 use crate::core::geometry::ShapeLimits;
 use crate::core::kernel::Shortest;
-use crate::core::soup::{Ignored, NOT_READ, Weld};
+use crate::core::soup::{Ignored, NOT_JOINED, NOT_READ, Weld};
 use crate::render::palette::{Palette, Rgba};
 use crate::render::scene::{feature_line, seam_line};
 
@@ -374,10 +374,13 @@ fn counts(ui: &mut Ui, import: &Import, palette: &Palette) {
         features(ui, shown, palette);
     }
     divisions(ui, import, shown, palette);
-    let repaired = loaded.repairs.iter().filter(|told| !told.starts_with(NOT_READ)).map(String::as_str).collect();
+    let is_repair = |told: &&String| ![NOT_READ, NOT_JOINED].iter().any(|other| told.starts_with(other));
+    let repaired = loaded.repairs.iter().filter(is_repair).map(String::as_str).collect();
+    let not_joined = loaded.repairs.iter().filter_map(|told| told.strip_prefix(NOT_JOINED)).collect();
     let not_read = loaded.repairs.iter().filter_map(|told| told.strip_prefix(NOT_READ)).collect();
     let title = if loaded.part.is_some() { "Told" } else { "Repaired" };
     told(ui, title, (icons::CHECK, palette.holds), repaired, palette);
+    told(ui, "Not joined", (icons::X, palette.broken), not_joined, palette);
     told(ui, "Not read", (icons::X, palette.text), not_read, palette);
 }
 

@@ -233,7 +233,7 @@ fn a_bent_chord_beside_a_divided_one_is_divided_too() {
         triangles: floor.into_iter().chain(wall).collect(),
         ..MeshFile::default()
     };
-    let given = repair(&file, &mut Nobody).unwrap();
+    let given = repair(&file, None, &mut Nobody).unwrap();
     let domain = surface(&given.mesh, &given.regions, ANGLE, StretchBound::default(), &mut Nobody).unwrap().domain;
     let spatial = domain.spatial.clone().unwrap();
     let between = |id: &CurveId| {

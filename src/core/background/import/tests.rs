@@ -41,12 +41,12 @@ fn one_within_three() -> MeshFile {
 }
 
 fn refusal(file: &MeshFile) -> String {
-    import(file, false).unwrap_err().to_string()
+    import(file, false, None).unwrap_err().to_string()
 }
 
 #[test]
 fn a_valid_mesh_is_imported_unchanged() {
-    let imported = import(&star(), false).unwrap();
+    let imported = import(&star(), false, None).unwrap();
     assert_eq!(imported.set.triangles, star().triangles);
     assert_eq!(imported.set.uv.len(), 5);
     assert_eq!(imported.repairs, Vec::<String>::new());
@@ -60,7 +60,7 @@ fn clockwise_and_duplicate_triangles_and_orphans_are_repaired_and_reported() {
     file.points.push(DVec3::new(7.0, 7.0, 0.0));
     file.triangles[1].swap(0, 1);
     file.triangles.push([0, 3, 4]);
-    let imported = import(&file, false).unwrap();
+    let imported = import(&file, false, None).unwrap();
     assert_eq!(imported.set.triangles.len(), 4);
     assert_eq!(
         imported.repairs,
@@ -78,12 +78,12 @@ fn quadrilaterals_and_polygons_among_triangles_are_cut_and_reported() {
         polygons: vec![vec![0, 1, 2, 6, 3]],
         ..MeshFile::default()
     };
-    let imported = import(&file, false).unwrap();
+    let imported = import(&file, false, None).unwrap();
     assert_eq!(imported.set.triangles.len(), 6);
     assert_eq!(imported.repairs, ["2 quadrilaterals and polygons were split into triangles"]);
     file.triangles.clear();
     file.quads.clear();
-    assert!(import(&file, true).is_ok());
+    assert!(import(&file, true, None).is_ok());
 }
 
 #[test]
@@ -129,7 +129,7 @@ fn what_cannot_be_repaired_is_refused() {
 fn a_plane_may_have_any_height() {
     let mut file = star();
     file.points.iter_mut().for_each(|p| p.z = 3.0);
-    assert!(import(&file, false).is_ok());
+    assert!(import(&file, false, None).is_ok());
     file.points[4].z = 3.25;
     assert!(refusal(&file).contains("z ranges from 3 to 3.25"));
 }
@@ -140,20 +140,20 @@ fn flat_triangles_are_removed() {
     for height in [0.0, 1e-9] {
         let mut file = star();
         file.points[4] = DVec3::new(0.5, height, 0.0);
-        let imported = import(&file, true).unwrap();
+        let imported = import(&file, true, None).unwrap();
         assert_eq!(imported.set.triangles.len(), 4);
         assert_eq!(imported.repairs[0], "1 degenerate triangle was removed");
     }
     let mut file = star();
     file.triangles.push([3, 3, 4]);
-    assert_eq!(import(&file, false).unwrap().set.triangles.len(), 4);
+    assert_eq!(import(&file, false, None).unwrap().set.triangles.len(), 4);
     let mut file = star();
     file.points.push(DVec3::new(0.25, 0.25, 0.0));
     file.triangles[0] = [1, 4, 5];
     file.triangles.extend([[1, 5, 0], [0, 5, 4]]);
     file.lines = vec![[0, 4]];
     file.line_tags = vec![8];
-    let imported = import(&file, true).unwrap();
+    let imported = import(&file, true, None).unwrap();
     assert_eq!(imported.repairs[0], "1 degenerate triangle was removed");
     // The line runs along what its side has become.
     assert_eq!((imported.set.triangles.len(), imported.set.lines.len()), (6, 4));
@@ -165,7 +165,7 @@ fn triangles_between_the_sides_of_a_crack_are_refused_by_their_numbers_in_the_fi
     file.points.push(DVec3::new(0.5, 0.5, 0.0));
     file.triangles.extend([[0, 4, 5], [4, 5, 2]]);
     file.counting.triangles = crate::core::soup::Count::From(11);
-    let fault = import(&file, false).unwrap_err();
+    let fault = import(&file, false, None).unwrap_err();
     let says = fault.to_string();
     assert!(says.contains("Triangles 15 and 16 are too flat: the first is without area"), "{says}");
     assert_eq!((fault.shapes.len(), fault.shapes[0].len()), (2, 3));
@@ -178,14 +178,14 @@ fn hanging_nodes_are_connected_unless_there_is_a_gap() {
     file.points[2].y = 1.0;
     file.points.extend([(0.5, 1.0), (0.0, 2.0), (1.0, 2.0)].map(|(x, y)| DVec3::new(x, y, 0.0)));
     file.triangles.extend([[3, 5, 6], [5, 7, 6], [5, 2, 7]]);
-    let imported = import(&file, true).unwrap();
+    let imported = import(&file, true, None).unwrap();
     assert_eq!(imported.repairs[0], "1 hanging point was joined to the mesh");
     assert_eq!(imported.set.triangles.len(), 8);
     // The square has points of its own, at the ends of the side too.
     file.points.extend([file.points[3], file.points[2]]);
     file.triangles.truncate(4);
     file.triangles.extend([[8, 5, 6], [5, 7, 6], [5, 9, 7]]);
-    let fault = import(&file, true).unwrap_err();
+    let fault = import(&file, true, None).unwrap_err();
     assert!(fault.to_string().contains("Point 6 hangs on a side of another triangle"), "{fault}");
     assert_eq!(fault.shapes, [[DVec3::new(0.5, 1.0, 0.0)]]);
 }
@@ -195,7 +195,7 @@ fn pinched_nodes_are_split_and_so_are_their_points() {
     let mut file = star();
     file.triangles.extend([[2, 5, 6], [2, 6, 7]]);
     file.points.extend([(2.0, 1.0), (2.0, 2.0), (1.0, 2.0)].map(|(x, y)| DVec3::new(x, y, 0.0)));
-    let imported = import(&file, false).unwrap();
+    let imported = import(&file, false, None).unwrap();
     assert_eq!(imported.set.uv.len(), 9);
     assert_eq!(imported.set.point.iter().map(|p| p.0).max(), Some(8));
     assert_eq!(imported.repairs, ["1 node was split where triangles share only a point"]);
@@ -208,7 +208,7 @@ fn several_components_are_all_kept() {
     let more: Vec<[u32; 3]> = file.triangles.iter().map(|t| t.map(|n| n + 5)).collect();
     file.points.extend(shifted);
     file.triangles.extend(more);
-    let imported = import(&file, false).unwrap();
+    let imported = import(&file, false, None).unwrap();
     assert_eq!((imported.set.uv.len(), imported.set.triangles.len()), (10, 8));
 }
 
@@ -218,7 +218,7 @@ fn coincident_nodes_remain_the_two_sides_of_a_crack() {
     let mut file = star();
     file.points.push(DVec3::new(0.0, 0.0, 0.0));
     file.triangles[3] = [3, 5, 4];
-    let imported = import(&file, false).unwrap();
+    let imported = import(&file, false, None).unwrap();
     assert_eq!(imported.set.uv.len(), 6);
     assert_eq!(imported.set.point.iter().map(|p| p.0).max(), Some(5));
     assert_eq!(imported.repairs, ["1 coincident point was kept as the other side of a crack"]);
@@ -229,7 +229,7 @@ fn regions_are_cut_apart_and_named() {
     let mut file = star();
     file.triangle_tags = vec![7, 7, 3, 3];
     file.groups = vec![Group { dimension: 2, tag: 7, name: "steel".to_owned() }];
-    let imported = import(&file, false).unwrap();
+    let imported = import(&file, false, None).unwrap();
     assert_eq!(imported.regions, [Named::tagged("region 3", 3), Named::tagged("steel", 7)]);
     assert_eq!(imported.set.region, [1, 1, 0, 0]);
     assert_eq!(imported.set.uv.len(), 8);
@@ -252,7 +252,7 @@ fn an_odd_part_is_refused_with_a_loop_and_its_place() {
 fn an_odd_part_is_divided_at_its_longest_boundary_segment_if_allowed() {
     let mut file = odd_fan();
     file.points[1].x = 2.0;
-    let imported = import(&file, true).unwrap();
+    let imported = import(&file, true, None).unwrap();
     assert_eq!(imported.set.triangles.len(), 4);
     assert_eq!(imported.set.uv[5], DVec2::new(1.0, 0.0));
     assert_eq!(imported.origin[5], [0, 1]);
@@ -267,17 +267,17 @@ fn odd_regions_share_as_few_divided_sides_as_possible() {
     // The one is of another region than the three around it, which meet only in points.
     let mut file = one_within_three();
     file.triangle_tags = vec![1, 2, 2, 2];
-    let imported = import(&file, false).unwrap();
+    let imported = import(&file, false, None).unwrap();
     assert_eq!(imported.repairs, ["3 sides between parts were divided to make triangle counts even"]);
     assert_eq!(imported.set.region.iter().filter(|region| **region == 0).count(), 4);
     file.triangle_tags.clear();
-    assert!(import(&file, false).is_ok());
+    assert!(import(&file, false, None).is_ok());
     // A strip of five squares; its regions have 1, 2, 2, 2, 2 and 1 triangles.
     let points: Vec<(f64, f64)> = (0..12).map(|k| (f64::from(k / 2), f64::from(k % 2))).collect();
     let halves: Vec<[u32; 3]> =
         (0..5).map(|k| 2 * k).flat_map(|k| [[k, k + 2, k + 1], [k + 2, k + 3, k + 1]]).collect();
     let strip = MeshFile { triangle_tags: (0..10).map(|t| (t + 3) / 2).collect(), ..mesh(&points, &halves) };
-    let told = |split_odd| import(&strip, split_odd).unwrap().repairs;
+    let told = |split_odd| import(&strip, split_odd, None).unwrap().repairs;
     assert_eq!(told(false), ["5 sides between parts were divided to make triangle counts even"]);
     assert_eq!(told(true), ["2 boundary segments were divided to make triangle counts even"]);
 }
@@ -289,14 +289,14 @@ fn odd_loops_of_an_even_part_are_fine() {
         &[(0.0, 0.0), (9.0, 0.0), (0.0, 9.0), (2.0, 2.0), (4.0, 2.0), (2.0, 4.0)],
         &[[0, 1, 4], [0, 4, 3], [1, 2, 5], [1, 5, 4], [2, 0, 3], [2, 3, 5]],
     );
-    assert_eq!(import(&file, false).unwrap().set.triangles.len(), 6);
+    assert_eq!(import(&file, false, None).unwrap().set.triangles.len(), 6);
 }
 
 #[test]
 fn lost_lines_inside_regions_are_reported() {
     let mut file = star();
     file.lines = vec![[0, 1], [4, 0]];
-    assert_eq!(import(&file, false).unwrap().repairs, ["1 ungrouped line inside a region was ignored"]);
+    assert_eq!(import(&file, false, None).unwrap().repairs, ["1 ungrouped line inside a region was ignored"]);
 }
 
 #[test]
@@ -305,7 +305,7 @@ fn lines_in_groups_are_kept_inside_regions_and_at_the_border() {
     file.lines = vec![[1, 0], [4, 0], [4, 2]];
     file.line_tags = vec![9, 5, 5];
     file.groups = vec![Group { dimension: 1, tag: 5, name: "rib".to_owned() }];
-    let Imported { set, lines, repairs, .. } = import(&file, false).unwrap();
+    let Imported { set, lines, repairs, .. } = import(&file, false, None).unwrap();
     assert_eq!(lines, [Named::tagged("rib", 5), Named::tagged("line 9", 9)]);
     assert!(repairs.is_empty(), "{repairs:?}");
     // Both banks of the rib name its two sides; nodes on it are doubled, points are not.
@@ -320,7 +320,7 @@ fn odd_parts_on_both_sides_of_a_line_are_made_even_by_dividing_it() {
     file.lines = vec![[3, 4], [4, 5], [5, 3]];
     file.line_tags = vec![1; 3];
     // The three outside are separate parts, since they meet only in points: each shares a side with the one inside.
-    let Imported { set, repairs, .. } = import(&file, false).unwrap();
+    let Imported { set, repairs, .. } = import(&file, false, None).unwrap();
     assert_eq!((set.triangles.len(), set.lines.len()), (10, 12));
     assert!(repairs[0].starts_with("3 "), "{repairs:?}");
     let firm = |t: &[u32; 3]| firm(set.uv[t[0] as usize], set.uv[t[1] as usize], set.uv[t[2] as usize]);
@@ -330,7 +330,7 @@ fn odd_parts_on_both_sides_of_a_line_are_made_even_by_dividing_it() {
     file.triangles = vec![[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 5, 4], [5, 6, 4], [6, 0, 4]];
     file.points.extend([DVec3::new(-0.1, 0.6, 0.0), DVec3::new(-0.1, 0.4, 0.0)]);
     (file.lines, file.line_tags) = (vec![[0, 4], [4, 3]], vec![4; 2]);
-    let Imported { set, repairs, .. } = import(&file, false).unwrap();
+    let Imported { set, repairs, .. } = import(&file, false, None).unwrap();
     assert_eq!((set.triangles.len(), set.lines.len()), (8, 6));
     assert!(repairs[0].contains("divided"), "{repairs:?}");
 }
@@ -348,7 +348,7 @@ fn equilateral_triangles_imply_their_size_and_stretched_ones_their_stretch() {
             let a = 5 * j + i;
             triangles.extend([[a, a + 1, a + 5], [a + 1, a + 6, a + 5]]);
         }
-        let set = import(&mesh(&points, &triangles), false).unwrap().set;
+        let set = import(&mesh(&points, &triangles), false, None).unwrap().set;
         for m in implied_metric(&set) {
             let (uu, vv) = (100.0, 100.0 / (stretch * stretch));
             assert!((m.uu / uu - 1.0).abs() < 1e-6 && (m.vv / vv - 1.0).abs() < 1e-6, "{m:?}");
@@ -367,7 +367,7 @@ fn a_background_mesh_survives_export_and_import() {
             ..MeshFile::default()
         };
         let expected = TriangleSet { lines: Vec::new(), ..set.clone() };
-        assert_eq!(import(&file, false).unwrap().set, expected);
+        assert_eq!(import(&file, false, None).unwrap().set, expected);
         assert!(implied_metric(&set).iter().all(Metric2::is_spd));
     }
 }
@@ -384,7 +384,7 @@ proptest! {
         let points: Vec<(f64, f64)> = points.iter().map(|&(x, y)| (f64::from(x), f64::from(y))).collect();
         let mut file = mesh(&points, &triangles);
         file.triangle_tags = tags.map(|t| t[..triangles.len()].to_vec()).unwrap_or_default();
-        if let Ok(imported) = import(&file, split) {
+        if let Ok(imported) = import(&file, split, None) {
             let set = &imported.set;
             let at = |node: u32| set.uv[node as usize];
             prop_assert!(set.triangles.iter().all(|&[a, b, c]| firm(at(a), at(b), at(c))));

@@ -4,14 +4,22 @@ use glam::DVec3;
 use rstar::primitives::{GeomWithData, Rectangle};
 use rstar::{AABB, RTree};
 
+use crate::core::kernel::decimal::{number, point_text};
 use crate::core::progress::Cancel;
 
 /// A point is close to another, or to a side, below this fraction of the shortest side at either of them.
 pub const CLOSE: f64 = 0.1;
 /// A point is beside a side, rather than beside an end of it, where its foot is this fraction of the side inside.
 const INSIDE: f64 = 1e-6;
-/// Limit of the pairs that are measured, for each point and side: many triangles around one place make many pairs.
-const PAIRS: usize = 64;
+/// Limits of the pairs that are measured: for each point, for each side or triangle, and for each of these on average.
+/// Many triangles around one place make many pairs.
+const AT_POINT: usize = 32;
+const AT_SIDE: usize = 1024;
+const ON_AVERAGE: usize = 32;
+/// Places that are named.
+const NAMED: usize = 5;
+/// How the words of [`Borders::not_joined`] begin.
+pub const NOT_JOINED: &str = "not joined: ";
 /// Points and sides looked at between two checks for cancellation.
 const BATCH: usize = 1 << 12;
 
@@ -114,7 +122,7 @@ impl<'a> Borders<'a> {
     /// What is [`CLOSE`] to the points of the borders, by point; empty when cancelled. Of a mesh with very many
     /// triangles around one place, only a part of it.
     pub fn close(&self, cancel: &Cancel) -> Vec<Close> {
-        let (mut found, mut left) = (Vec::new(), PAIRS * (self.points.len() + self.sides.len()));
+        let (mut found, mut left) = (Vec::new(), ON_AVERAGE * self.sides.len());
         let boxed = |k: u32| {
             let (p, far) = (self.points[k as usize], DVec3::splat(CLOSE * self.shortest[k as usize]));
             GeomWithData::new(Rectangle::from_corners((p - far).to_array(), (p + far).to_array()), k)
@@ -132,8 +140,7 @@ impl<'a> Borders<'a> {
             if self.elements_at(other).is_empty() {
                 continue;
             }
-            for near in tree.locate_all_at_point(p.to_array()).map(|near| near.data).take(left) {
-                left -= 1;
+            for near in tree.locate_all_at_point(p.to_array()).map(|near| near.data).take(AT_POINT) {
                 let distance = p.distance(self.points[near as usize]);
                 let local = self.shortest[near as usize].min(self.shortest[other as usize]);
                 if near != other && distance <= CLOSE * local && !self.are_of_one_element(near, other) {
@@ -148,7 +155,8 @@ impl<'a> Borders<'a> {
             let [a, b] = alike[0].0.map(|end| self.points[end as usize]);
             let (along, long) = (b - a, a.distance(b));
             let around = AABB::from_corners(a.min(b).to_array(), a.max(b).to_array());
-            for near in tree.locate_in_envelope_intersecting(around).map(|near| near.data).take(left) {
+            let most = left.min(AT_SIDE);
+            for near in tree.locate_in_envelope_intersecting(around).map(|near| near.data).take(most) {
                 left -= 1;
                 let p = self.points[near as usize] - a;
                 let t = p.dot(along) / (long * long);
@@ -162,5 +170,68 @@ impl<'a> Borders<'a> {
         }
         found.sort_unstable_by(|a, b| a.point.cmp(&b.point).then(a.distance.total_cmp(&b.distance)));
         found
+    }
+
+    /// Appends the points of borders that are [`CLOSE`] to the inside of triangles that touch none of their elements.
+    fn close_to_triangles(&self, found: &mut Vec<Close>, cancel: &Cancel) {
+        let border = (0..self.points.len() as u32).filter(|&k| self.is_border[k as usize]);
+        let place = |k: u32| GeomWithData::new(self.points[k as usize].to_array(), k);
+        let tree: RTree<GeomWithData<[f64; 3], u32>> = RTree::bulk_load(border.map(place).collect());
+        let elements = self.corners.start.len() as u32 - 1;
+        let mut left = ON_AVERAGE * elements as usize;
+        for element in 0..elements {
+            if (element as usize).is_multiple_of(BATCH) && cancel.is_asked() {
+                return;
+            }
+            let &[a, b, c] = self.corners(element) else { continue };
+            let p = [a, b, c].map(|k| self.points[k as usize]);
+            let local = (0..3).map(|k| p[k].distance(p[(k + 1) % 3])).fold(f64::INFINITY, f64::min);
+            let margin = DVec3::splat(CLOSE * local);
+            let (low, high) = (p[0].min(p[1]).min(p[2]) - margin, p[0].max(p[1]).max(p[2]) + margin);
+            let normal = (p[1] - p[0]).cross(p[2] - p[0]);
+            let (around, most) = (AABB::from_corners(low.to_array(), high.to_array()), left.min(AT_SIDE));
+            for near in tree.locate_in_envelope(around).take(most) {
+                left -= 1;
+                let (point, q) = (near.data, self.points[near.data as usize]);
+                let is_over = (0..3).all(|k| (p[(k + 1) % 3] - p[k]).cross(q - p[k]).dot(normal) > 0.0);
+                let distance = ((q - p[0]).dot(normal) / normal.length()).abs();
+                let local = local.min(self.shortest[point as usize]);
+                let touches = |k: u32| k == point || self.are_of_one_element(k, point);
+                if is_over && distance <= CLOSE * local && ![a, b, c].into_iter().any(touches) {
+                    found.push(Close { point, distance, local });
+                }
+            }
+        }
+    }
+
+    /// What is to be told of borders that nearly touch; nothing where none do. In the plane, what is at exactly one
+    /// place is a crack.
+    pub fn not_joined(&self, in_space: bool, cancel: &Cancel) -> Option<String> {
+        let mut close = self.close(cancel);
+        if in_space {
+            self.close_to_triangles(&mut close, cancel);
+        } else {
+            close.retain(|close| close.distance > 0.0);
+        }
+        let nearest = close.iter().map(|close| close.distance).reduce(f64::min)?;
+        let mut points: Vec<u32> = close.iter().map(|close| close.point).collect();
+        points.sort_unstable();
+        points.dedup();
+        let place = |&k: &u32| match in_space {
+            true => point_text(self.points[k as usize]),
+            false => point_text(self.points[k as usize].truncate()),
+        };
+        let places: Vec<String> = points.iter().take(NAMED).map(place).collect();
+        let more = match points.len() - places.len() {
+            0 => String::new(),
+            more => format!(" and {more} more"),
+        };
+        let (count, are) = match points.len() {
+            1 => ("1 point of a border".to_owned(), "is"),
+            n => (format!("{n} points of borders"), "are"),
+        };
+        let away = number(nearest);
+        let places = places.join(", ");
+        Some(format!("{NOT_JOINED}{count} {are} close to other elements, {away} away or more, at {places}{more}"))
     }
 }

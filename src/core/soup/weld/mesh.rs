@@ -18,6 +18,8 @@ const FAR_BELOW: f64 = 1e-3;
 /// or up to [`CLOSE`] if rounding may have moved them so far: coordinates of one place differ by a unit in the last
 /// place, in each direction.
 const ROUNDED: f64 = 1.75;
+/// Coordinates that differ by this fraction of the largest one are the same.
+const ROUNDING: f64 = 4.0 * f64::EPSILON;
 /// No other distance may be less than so many times the largest at which points are merged.
 const GAP: f64 = 10.0;
 /// Points are merged up to so many times the largest distance found, if the gap has room for it.
@@ -54,7 +56,7 @@ impl Welded {
             told.push_str(&format!(", up to {} away", number(self.farthest)));
         }
         Repair::KeptApart.report(self.apart, repairs);
-        Repair::BranchingSide.report(self.branching, repairs);
+        Repair::BranchingEdge.report(self.branching, repairs);
     }
 }
 
@@ -223,7 +225,9 @@ fn retain<T>(items: &mut Vec<T>, keep: &[bool]) {
 /// The distance up to which points are merged by [`Weld::Auto`]; 0: none are.
 fn automatic(borders: &Borders<'_>, points: &[DVec3], cancel: &Cancel) -> f64 {
     let mut close = borders.close(cancel);
-    close.retain(|close| close.distance > 0.0);
+    // What differs by rounding in double precision is at one place.
+    let largest = points.iter().fold(0.0_f64, |largest, p| largest.max(p.abs().max_element()));
+    close.retain(|close| close.distance > ROUNDING * largest);
     if close.is_empty() {
         return 0.0;
     }
