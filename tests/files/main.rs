@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used)]
 
 mod as_people_have_them;
+mod defects;
 mod foreign;
 mod independent;
 mod mutation;
