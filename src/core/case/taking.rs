@@ -92,6 +92,7 @@ impl Taking {
             return;
         }
         file.points.iter_mut().for_each(|p| *p *= self.scale);
+        file.second_order.scale(self.scale);
         let k = 1.0 / (self.scale * self.scale);
         let scaled = |m: &Metric3| Metric3 {
             xx: m.xx * k,

@@ -187,8 +187,23 @@ impl Surface {
 /// the size at which the surface turns by 30 degrees (but at least a sixth of the mean) or deviates by 0.3 % of its
 /// extent, and with a growth of at most 1.3 from one element to the next.
 pub fn implied_sizes(mesh: &Triangles) -> Vec<Metric3> {
-    let edges = Edges::of(&mesh.triangles);
     let mut sums = vec![(0.0, 0.0); mesh.points.len()];
+    let edges = Edges::of(&mesh.triangles);
+    for [a, b] in (0..edges.len()).map(|edge| edges.get(edge).ends) {
+        let long = mesh.points[a as usize].distance(mesh.points[b as usize]);
+        for end in [a, b] {
+            let (sum, count) = &mut sums[end as usize];
+            (*sum, *count) = (*sum + long, *count + 1.0);
+        }
+    }
+    // A point without edges has no size.
+    let means: Vec<f64> = sums.iter().map(|&(sum, count)| if count > 0.0 { sum / count } else { 0.0 }).collect();
+    sizes_within(mesh, &means)
+}
+
+/// As [`implied_sizes`], with other lengths than those of the edges at each point.
+pub fn sizes_within(mesh: &Triangles, means: &[f64]) -> Vec<Metric3> {
+    let edges = Edges::of(&mesh.triangles);
     // Upper bounds by turning and by deviation.
     let mut most = vec![(f64::INFINITY, f64::INFINITY); mesh.points.len()];
     let (low, high) = extent(mesh.points.iter().copied());
@@ -198,11 +213,6 @@ pub fn implied_sizes(mesh: &Triangles) -> Vec<Metric3> {
         let Edge { ends, sides } = edges.get(edge);
         let [a, b] = ends.map(|end| mesh.points[end as usize]);
         let long = a.distance(b);
-        for end in ends {
-            let (sum, count) = &mut sums[end as usize];
-            *sum += long;
-            *count += 1.0;
-        }
         if let (None, &[one, other]) = (features[edge], sides) {
             let [n, m] = [one, other].map(|side| mesh.area_vector(side as usize / 3));
             let turn = libm::atan2(n.cross(m).length(), n.dot(m));
@@ -218,11 +228,11 @@ pub fn implied_sizes(mesh: &Triangles) -> Vec<Metric3> {
             }
         }
     }
-    let size = |((sum, count), (by_turn, by_distance)): (&(f64, f64), &(f64, f64))| match sum / count {
-        mean if *count > 0.0 => by_turn.clamp(LEAST_SIZE * mean, mean).min(*by_distance),
+    let size = |(&mean, (by_turn, by_distance)): (&f64, &(f64, f64))| match mean {
+        mean if mean > 0.0 => by_turn.clamp(LEAST_SIZE * mean, mean).min(*by_distance),
         _ => 1.0,
     };
-    let mut sizes: Vec<Metric3> = sums.iter().zip(&most).map(size).map(Metric3::isotropic).collect();
+    let mut sizes: Vec<Metric3> = means.iter().zip(&most).map(size).map(Metric3::isotropic).collect();
     let ends: Vec<[u32; 2]> = (0..edges.len()).map(|edge| edges.get(edge).ends).collect();
     bound_gradation(&mesh.points, &ends, &mut sizes, GRADATION);
     sizes

@@ -1,7 +1,7 @@
 //! Gmsh's MSH format, versions 2.2 and 4.1.
 //!
-//! Reads text and binary of either byte order; writes text. Deliberately absent: partitions, periodicity, elements of
-//! higher order (rejected), volume elements (counted in [`MeshFile::skipped`]).
+//! Reads text and binary of either byte order; writes text. Of elements of order 2 the corners are read, and the other
+//! nodes beside them. Deliberately absent: partitions, periodicity, elements of higher order (rejected), volume elements (counted in [`MeshFile::skipped`]).
 //!
 //! [`MeshFile::skipped`]: crate::core::soup::MeshFile::skipped
 
@@ -21,10 +21,11 @@ const METRIC: &str = "metric";
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Shape {
     Point,
-    Line,
-    Triangle,
-    Quad,
-    /// A line or surface element with nodes other than its corners.
+    /// A line, and the number of its nodes that are no corners; likewise the next two.
+    Line(usize),
+    Triangle(usize),
+    Quad(usize),
+    /// A line or surface element of order 3 or more, or of order 2 with nodes at some places only.
     HigherOrder,
     /// A volume element: name and number of nodes.
     Volume(&'static str, usize),
@@ -41,11 +42,15 @@ const VOLUMES: [(&str, [(i64, usize); 5]); 4] = [
 /// Gmsh's table of element types.
 fn shape(kind: i64) -> Option<Shape> {
     Some(match kind {
-        1 => Shape::Line,
-        2 => Shape::Triangle,
-        3 => Shape::Quad,
+        1 => Shape::Line(0),
+        2 => Shape::Triangle(0),
+        3 => Shape::Quad(0),
+        8 => Shape::Line(1),
+        9 => Shape::Triangle(3),
+        10 => Shape::Quad(5),
+        16 => Shape::Quad(4),
         15 => Shape::Point,
-        8 | 9 | 10 | 16 | 20..=28 | 36..=62 => Shape::HigherOrder,
+        20..=28 | 36..=62 => Shape::HigherOrder,
         _ => {
             let of_kind = |&(name, kinds): &(&'static str, [(i64, usize); 5])| {
                 Some(Shape::Volume(name, kinds.iter().find(|(known, _)| *known == kind)?.1))

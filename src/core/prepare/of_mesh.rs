@@ -14,7 +14,7 @@ use crate::core::case::{Case, MeshSource, MeshUse, Taking};
 use crate::core::discrete::curvature::curvature_sizes;
 use crate::core::discrete::own_triangles::implied_metric_in_space;
 use crate::core::discrete::repair::repair;
-use crate::core::discrete::surface::{implied_sizes, surface};
+use crate::core::discrete::surface::{implied_sizes, sizes_within, surface};
 use crate::core::discrete::{Repaired, Surface, Triangles};
 use crate::core::fault::Fault;
 use crate::core::formats::format::read_mesh_watched;
@@ -22,6 +22,7 @@ use crate::core::kernel::Metric2;
 use crate::core::mesh::{Embedding, Mesh, Names};
 use crate::core::metric::{Field, FieldSpec, MetricSource, Sizing};
 use crate::core::progress::{Stage, Watch};
+use crate::core::soup::second_order::Divided;
 use crate::core::soup::{MeshFile, Repair};
 
 /// The background of a given mesh: its own triangles (the default in the plane), or its shape (the default in space).
@@ -44,7 +45,8 @@ pub(super) fn from_mesh(
     taking.scale(&mut file);
     file.ignore_groups(&case.ignore_groups).map_err(|fault| fault.at(place.clone()))?;
     if !file.is_plane() || taking.used == Some(MeshUse::Shape) {
-        return from_surface(case, &file, &place, taking, watch);
+        let bends = if taking.used == Some(MeshUse::Triangles) { None } else { file.divided_along_bends() };
+        return from_surface(case, &file, bends, &place, taking, watch);
     }
     let mut imported = import(&file, case.split_odd).map_err(|fault| fault.at(place.clone()))?;
     imported.repairs.append(&mut file.not_read());
@@ -85,10 +87,12 @@ pub(super) fn from_mesh(
 }
 
 /// A mesh as a surface without CAD: its shape remeshed, or its own triangles, chart by chart. Sizes are those of the
-/// case's fields; without fields, those given at its points or implied by its triangles. `place` is the file's name.
+/// case's fields; without fields, those given at its points or implied by its triangles, before they were divided along
+/// their `bends`. `place` is the file's name.
 fn from_surface(
     case: &Case,
     file: &MeshFile,
+    bends: Option<Divided>,
     place: &str,
     taking: &Taking,
     watch: &mut dyn Watch,
@@ -97,6 +101,11 @@ fn from_surface(
     let here = |fault: Fault| if fault.is_stop() { fault } else { fault.at(place) };
     let Repaired { mesh, copied, regions, lines, points, mut repairs } = repair(file, watch).map_err(here)?;
     let surface = surface(&mesh, &regions, taking.feature_angle, taking.bound(), watch).map_err(here)?;
+    if let &Some(Divided { elements, triangles, is_coarse, .. }) = &bends {
+        Repair::BentElement.report(elements, &mut repairs);
+        let so_far = if is_coarse { ", which are still off its bend: there would be too many" } else { "" };
+        repairs.push(format!("the bend was divided into {triangles} triangles{so_far}"));
+    }
     let converts = taking.used == Some(MeshUse::Triangles);
     let mut fields = Vec::new();
     for spec in &case.fields {
@@ -115,7 +124,16 @@ fn from_surface(
                 surface.table(&given.iter().copied().chain(copies).collect::<Vec<_>>()).map_err(here)?
             }
             None if converts => surface.table(&implied_metric_in_space(&mesh)).map_err(here)?,
-            None => surface.table(&implied_sizes(&mesh)).map_err(here)?,
+            None => {
+                let sizes = match &bends {
+                    Some(Divided { lengths, .. }) => {
+                        let copies = copied.iter().map(|&point| lengths[point as usize]);
+                        sizes_within(&mesh, &lengths.iter().copied().chain(copies).collect::<Vec<_>>())
+                    }
+                    None => implied_sizes(&mesh),
+                };
+                surface.table(&sizes).map_err(here)?
+            }
         });
     }
     let faces = surface.regions.clone();

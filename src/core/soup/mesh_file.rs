@@ -61,6 +61,16 @@ pub struct Omitted {
     pub names: Vec<(String, usize)>,
 }
 
+/// Nodes of elements of second order that are no corners: they bend elements whose corners are in the mesh. A side has
+/// one for all elements that share it.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SecondOrder {
+    /// The ends of a side, the smaller index first, and its node; each side once, by ascending ends.
+    pub sides: Vec<([u32; 2], DVec3)>,
+    /// The corners of a quadrilateral, and the node in its middle; each once, by ascending corners.
+    pub centres: Vec<([u32; 4], DVec3)>,
+}
+
 /// Points and elements of a surface mesh. Indices are zero-based; whoever builds this has checked them against
 /// `points`.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -101,6 +111,8 @@ pub struct MeshFile {
     pub skipped: Vec<(String, usize)>,
     /// What else of the file is not read.
     pub omitted: Vec<Omitted>,
+    /// The nodes that elements of second order have besides their corners.
+    pub second_order: SecondOrder,
     /// How the file numbers its points and elements.
     pub counting: Counting,
 }
@@ -175,7 +187,9 @@ impl MeshFile {
     pub fn is_plane(&self) -> bool {
         let elements = self.triangles.as_flattened().iter().chain(self.quads.as_flattened());
         let points = elements.chain(self.polygons.iter().flatten()).filter_map(|&k| self.points.get(k as usize));
-        let (low, high) = extent(points.copied());
+        let SecondOrder { sides, centres } = &self.second_order;
+        let middles = sides.iter().map(|side| side.1).chain(centres.iter().map(|centre| centre.1));
+        let (low, high) = extent(points.copied().chain(middles));
         let extent = high - low;
         // Points that are not finite are refused later, by number.
         let least = 1e-9 * extent.x.max(extent.y).max(high.z.abs());

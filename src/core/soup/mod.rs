@@ -10,10 +10,11 @@ pub(in crate::core) mod weld;
 pub mod soundness;
 mod repairs;
 mod not_read;
+pub(in crate::core) mod second_order;
 
 pub use counting::{Count, Counting, Elements};
 pub use groups::Ignored;
-pub use mesh_file::{Data, Group, Members, MeshFile, Omitted, Texture};
+pub use mesh_file::{Data, Group, Members, MeshFile, Omitted, SecondOrder, Texture};
 pub use not_read::NOT_READ;
 pub(in crate::core) use not_read::{CELL_DATA, EMPTY_GROUP, POINT_DATA, times};
 pub(in crate::core) use repairs::Repair;

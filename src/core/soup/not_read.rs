@@ -39,6 +39,10 @@ impl MeshFile {
             let names = data.iter().map(|data| data.name.as_str()).filter(|name| !is_id(name));
             names.for_each(|name| note(&mut omitted, kind, name, 1));
         }
+        let middles = self.second_order.sides.len() + self.second_order.centres.len();
+        if middles > 0 {
+            note(&mut omitted, "mid-side node", "of an element of order 2", middles);
+        }
         self.empty_groups().iter().for_each(|name| note(&mut omitted, EMPTY_GROUP, name, 1));
         let mut kinds: Vec<String> = self.skipped.iter().map(|(kind, count)| times(kind, *count)).collect();
         kinds.extend(omitted.iter().map(listing));

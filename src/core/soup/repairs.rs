@@ -4,6 +4,7 @@
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::core) enum Repair {
     Triangulated,
+    BentElement,
     UnusedPoint,
     MergedPoint,
     CrackPoint,
@@ -34,6 +35,7 @@ impl Repair {
     fn words(self) -> [&'static str; 3] {
         match self {
             Repair::Triangulated => ["quadrilateral or polygon", "quadrilaterals and polygons", "split into triangles"],
+            Repair::BentElement => ["element of order 2", "elements of order 2", "divided along their bend"],
             Repair::UnusedPoint => ["unused point", "unused points", "removed"],
             Repair::MergedPoint => ["coincident point", "coincident points", "merged"],
             Repair::CrackPoint => ["coincident point", "coincident points", "kept as the other side of a crack"],

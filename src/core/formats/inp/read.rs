@@ -5,12 +5,14 @@ use std::collections::BTreeMap;
 
 use glam::DVec3;
 use rustc_hash::FxHashMap;
+use smallvec::SmallVec;
 
 use crate::core::fault::Fault;
 use crate::core::formats::numbering::{Numbering, sort_by_number};
 use crate::core::formats::scan::{Scanner, parse_whole, shown};
 use crate::core::progress::Pace;
 use crate::core::soup::groups::{Listed, by_region};
+use crate::core::soup::second_order::Middles;
 use crate::core::soup::{Count, Group, Members, MeshFile};
 
 /// How the nodes of an element type are read.
@@ -101,8 +103,7 @@ pub fn read(name: &str, bytes: &[u8], pace: &dyn Pace) -> Result<MeshFile, Fault
     let mut skipped: BTreeMap<String, usize> = BTreeMap::new();
     let mut section = Section::Other;
     let mut sets = Sets::default();
-    // Nodes of elements of order 2 that are not their corners.
-    let mut middles: Vec<u32> = Vec::new();
+    let mut middles = Middles::default();
     let mut any = false;
     // Whether the previous data line goes on.
     let mut goes_on = false;
@@ -151,18 +152,20 @@ pub fn read(name: &str, bytes: &[u8], pace: &dyn Pace) -> Result<MeshFile, Fault
                         s.fault(format!("Element {number} refers to node {node}, which does not exist"))
                     })?;
                 }
+                let corners: SmallVec<[u32; 4]> = shape.corners.iter().map(|&place| of_element[place]).collect();
                 let others = (0..shape.nodes).filter(|place| !shape.corners.contains(place));
-                middles.extend(others.map(|place| of_element[place]));
-                match *shape.corners {
-                    [a, b] => mesh.lines.push([a, b].map(|place| of_element[place])),
+                middles.add(&corners, &others.map(|place| of_element[place]).collect::<SmallVec<[u32; 5]>>());
+                match *corners {
+                    [a, b] => mesh.lines.push([a, b]),
                     [a, b, c] => {
-                        mesh.triangles.push([a, b, c].map(|place| of_element[place]));
+                        mesh.triangles.push([a, b, c]);
                         triangle_numbers.push(number);
                     }
-                    _ => {
-                        mesh.quads.push([0, 1, 2, 3].map(|place| of_element[place]));
+                    [a, b, c, d, ..] => {
+                        mesh.quads.push([a, b, c, d]);
                         quad_numbers.push(number);
                     }
+                    _ => {}
                 }
             }
             Section::Skipped(kind) => {
@@ -206,9 +209,6 @@ pub fn read(name: &str, bytes: &[u8], pace: &dyn Pace) -> Result<MeshFile, Fault
     if nodes.is_none() {
         number(&s, &mut node_numbers, &mut mesh.points)?;
     }
-    if !middles.is_empty() {
-        drop_middles(&mut mesh, &mut node_numbers, &middles);
-    }
     sort_by_number(&mut triangle_numbers, &mut mesh.triangles, &mut []);
     sort_by_number(&mut quad_numbers, &mut mesh.quads, &mut []);
     mesh.counting.shared = true;
@@ -216,6 +216,7 @@ pub fn read(name: &str, bytes: &[u8], pace: &dyn Pace) -> Result<MeshFile, Fault
     (mesh.counting.triangles, mesh.counting.quads) = (Count::of(&triangle_numbers), Count::of(&quad_numbers));
     sets.into_groups(&mut mesh, &triangle_numbers, &quad_numbers);
     mesh.skipped = skipped.into_iter().collect();
+    middles.leave(&mut mesh);
     Ok(mesh)
 }
 
@@ -239,28 +240,6 @@ fn continued<'a>(s: &mut Scanner<'a>, line: &'a [u8], is_part: impl Fn(&[u8], &[
         *s = ahead;
     }
     whole
-}
-
-/// Removes the nodes of elements of order 2 that are no corners of any element, and tells of them.
-fn drop_middles(mesh: &mut MeshFile, numbers: &mut Vec<u64>, middles: &[u32]) {
-    let mut is_middle = vec![false; mesh.points.len()];
-    middles.iter().for_each(|&node| is_middle[node as usize] = true);
-    let corners = |mesh: &mut MeshFile, visit: &mut dyn FnMut(&mut u32)| {
-        mesh.lines.as_flattened_mut().iter_mut().for_each(&mut *visit);
-        mesh.triangles.as_flattened_mut().iter_mut().for_each(&mut *visit);
-        mesh.quads.as_flattened_mut().iter_mut().for_each(visit);
-    };
-    corners(mesh, &mut |node| is_middle[*node as usize] = false);
-    let mut next = 0..;
-    let index: Vec<u32> = is_middle.iter().map(|&gone| if gone { 0 } else { next.next().unwrap_or(0) }).collect();
-    corners(mesh, &mut |node| *node = index[*node as usize]);
-    let (mut of_point, mut of_number) = (is_middle.iter(), is_middle.iter());
-    mesh.points.retain(|_| of_point.next() == Some(&false));
-    numbers.retain(|_| of_number.next() == Some(&false));
-    let dropped = is_middle.len() - mesh.points.len();
-    if dropped > 0 {
-        mesh.omit_many("mid-side node", "of an element of order 2", dropped);
-    }
 }
 
 impl Sets {

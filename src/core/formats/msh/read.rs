@@ -11,6 +11,7 @@ use crate::core::fault::Fault;
 use crate::core::formats::numbering::{Numbering, sort_by_number};
 use crate::core::formats::scan::{ByteOrder, Scanner, TRUNCATED, shown};
 use crate::core::progress::Pace;
+use crate::core::soup::second_order::Middles;
 use crate::core::soup::{Count, Group, MeshFile};
 
 /// Reads a mesh from the bytes of an MSH file; `name` is the file's name in messages.
@@ -21,8 +22,8 @@ use crate::core::soup::{Count, Group, MeshFile};
 /// one component is kept if it covers every node, or every triangle and quadrilateral.
 ///
 /// # Errors
-/// With the line: anything that is not MSH 2.x or 4.1, and parts of MSH that are not supported (elements of higher
-/// order).
+/// With the line: anything that is not MSH 2.x or 4.1, and parts of MSH that are not supported (elements of order 3
+/// and more).
 pub fn read(name: &str, bytes: &[u8], pace: &dyn Pace) -> Result<MeshFile, Fault> {
     let mut reader = Reader {
         input: Input { scanner: Scanner::new(name, bytes).watched(pace), binary: None },
@@ -31,6 +32,7 @@ pub fn read(name: &str, bytes: &[u8], pace: &dyn Pace) -> Result<MeshFile, Fault
         nodes: None,
         has_elements: false,
         grouping: Grouping::default(),
+        middles: Middles::default(),
         numbers: Default::default(),
         elements: None,
         skipped: BTreeMap::new(),
@@ -52,6 +54,7 @@ pub fn read(name: &str, bytes: &[u8], pace: &dyn Pace) -> Result<MeshFile, Fault
             .remedy("Save it with nodes and elements"));
     }
     reader.file.skipped = reader.skipped.into_iter().map(|(name, count)| (name.to_string(), count)).collect();
+    reader.middles.leave(&mut reader.file);
     Ok(reader.file)
 }
 
@@ -70,6 +73,7 @@ pub(super) struct Reader<'a> {
     pub nodes: Option<Numbering>,
     has_elements: bool,
     grouping: Grouping,
+    middles: Middles,
     /// Element tags of lines, triangles and quadrilaterals.
     pub numbers: [Vec<u64>; 3],
     /// Element tags to indices (triangles first), built on demand; the inner `None` means that tags are not unique.
@@ -391,8 +395,9 @@ impl Reader<'_> {
                 let [point] = self.corners()?;
                 self.grouping.points.push((point, group));
             }
-            Shape::Line => {
+            Shape::Line(others) => {
                 let corners = self.corners()?;
+                self.others(&corners, others)?;
                 let MeshFile { lines, line_tags, .. } = &mut self.file;
                 if !self.grouping.takes(lists_again && lines.last() == Some(&corners), line_tags, group) {
                     lines.push(corners);
@@ -400,8 +405,9 @@ impl Reader<'_> {
                     self.numbers[0].push(number);
                 }
             }
-            Shape::Triangle => {
+            Shape::Triangle(others) => {
                 let corners = self.corners()?;
+                self.others(&corners, others)?;
                 let MeshFile { triangles, triangle_tags, .. } = &mut self.file;
                 if !self.grouping.takes(lists_again && triangles.last() == Some(&corners), triangle_tags, group) {
                     triangles.push(corners);
@@ -409,8 +415,9 @@ impl Reader<'_> {
                     self.numbers[1].push(number);
                 }
             }
-            Shape::Quad => {
+            Shape::Quad(others) => {
                 let corners = self.corners()?;
+                self.others(&corners, others)?;
                 let MeshFile { quads, quad_tags, .. } = &mut self.file;
                 if !self.grouping.takes(lists_again && quads.last() == Some(&corners), quad_tags, group) {
                     quads.push(corners);
@@ -420,8 +427,8 @@ impl Reader<'_> {
             }
             Shape::HigherOrder => {
                 return Err(self
-                    .fault(format!("Elements of higher order (type {kind}) are not supported"))
-                    .remedy("Save the mesh with elements of order 1 (in Gmsh: Mesh.ElementOrder = 1)"));
+                    .fault(format!("Elements of order 3 or more (type {kind}) are not supported"))
+                    .remedy("Save the mesh with elements of order 1 or 2 (in Gmsh: Mesh.ElementOrder = 2)"));
             }
             Shape::Volume(name, nodes) => {
                 for _ in 0..nodes {
@@ -439,6 +446,16 @@ impl Reader<'_> {
             *corner = self.node()?;
         }
         Ok(corners)
+    }
+
+    /// Reads the nodes of an element of order 2 after its corners.
+    fn others(&mut self, corners: &[u32], count: usize) -> Result<(), Fault> {
+        let mut nodes = [0; 5];
+        for node in &mut nodes[..count] {
+            *node = self.node()?;
+        }
+        self.middles.add(corners, &nodes[..count]);
+        Ok(())
     }
 
     /// The index of a node of an element.

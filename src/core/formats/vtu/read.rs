@@ -9,6 +9,7 @@ use crate::core::fault::Fault;
 use crate::core::formats::scan::{Scanner, TRUNCATED, shown};
 use crate::core::kernel::Metric3;
 use crate::core::progress::Pace;
+use crate::core::soup::second_order::Middles;
 use crate::core::soup::{CELL_DATA, Counting, Data, Group, MeshFile, POINT_DATA};
 
 /// A data array of the file.
@@ -201,6 +202,7 @@ fn assemble(s: &Scanner, name: &str, mut arrays: Vec<Array>) -> Result<MeshFile,
     let cells = types.values.len();
     let mut from = 0usize;
     let mut points_alone = 0;
+    let mut middles = Middles::default();
     for cell in 0..cells {
         let (to, kind) = (offsets.values.at(cell), types.values.at(cell));
         if !(to >= from as f64 && to as usize <= connectivity.values.len()) {
@@ -208,7 +210,7 @@ fn assemble(s: &Scanner, name: &str, mut arrays: Vec<Array>) -> Result<MeshFile,
         }
         let corners = from..to as usize;
         from = to as usize;
-        let mut indices = [0; 4];
+        let mut indices = [0; 9];
         for (index, at) in indices.iter_mut().zip(corners.clone()) {
             let corner = connectivity.values.at(at);
             if !(corner >= 0.0 && corner < mesh.points.len() as f64 && corner.fract() == 0.0) {
@@ -217,7 +219,17 @@ fn assemble(s: &Scanner, name: &str, mut arrays: Vec<Array>) -> Result<MeshFile,
             }
             *index = corner as u32;
         }
-        match (kind as u8, corners.len()) {
+        // The kind of the element without its other nodes: those of Lagrange cells of order 2 are in the same order.
+        let (plain, own) = match (kind as u8, corners.len()) {
+            (21 | 68, 3) => (3, 2),
+            (22 | 69, 6) | (34, 7) => (5, 3),
+            (23, 8) | (28 | 70, 9) => (9, 4),
+            of => of,
+        };
+        if own < corners.len() {
+            middles.add(&indices[..own], &indices[own..corners.len()]);
+        }
+        match (plain, own) {
             (5, 3) => {
                 mesh.counting.triangles.push(mesh.triangles.len(), cell as u64);
                 mesh.triangles.push([indices[0], indices[1], indices[2]]);
@@ -225,7 +237,7 @@ fn assemble(s: &Scanner, name: &str, mut arrays: Vec<Array>) -> Result<MeshFile,
             }
             (9, 4) => {
                 mesh.counting.quads.push(mesh.quads.len(), cell as u64);
-                mesh.quads.push(indices);
+                mesh.quads.push([indices[0], indices[1], indices[2], indices[3]]);
                 quad_cells.push(cell as u32);
             }
             (3, 2) => {
@@ -237,9 +249,9 @@ fn assemble(s: &Scanner, name: &str, mut arrays: Vec<Array>) -> Result<MeshFile,
                 return Err(s.fault_at(offsets.mark, what));
             }
             (1 | 2, _) => points_alone += 1,
-            (21..=37, _) => {
-                let what = format!("Cells of higher order (type {kind}) are not supported");
-                return Err(s.fault_at(types.mark, what).remedy("Save the mesh with cells of order 1"));
+            (21..=23 | 28 | 30 | 34..=36 | 68..=70 | 75..=77, _) => {
+                let what = format!("Cells of order 3 or more (type {kind}, {own} points) are not supported");
+                return Err(s.fault_at(types.mark, what).remedy("Save the mesh with cells of order 1 or 2"));
             }
             (other, _) => *skipped.entry(format!("VTK cell of type {other}")).or_default() += 1,
         }
@@ -302,5 +314,6 @@ fn assemble(s: &Scanner, name: &str, mut arrays: Vec<Array>) -> Result<MeshFile,
         }
     }
     mesh.groups.sort_by_key(|group| (group.dimension, group.tag));
+    middles.leave(&mut mesh);
     Ok(mesh)
 }
